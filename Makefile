@@ -18,8 +18,8 @@ FOR_ROBOT := --robot $(LIZARD_ROBOT)
 endif
 
 # All packages but the Python module's, whose dependencies would give those of the others more features, so that
-# every one of them would be compiled twice.
-ALL := --workspace --exclude lizard-python
+# every one of them would be compiled twice; and but the page's build tool, which only the page needs.
+ALL := --workspace --exclude lizard-python --exclude lizard-bindgen
 
 # Cargo can use make's jobserver only in a rule that calls make, and warns in others.
 CARGO := MAKEFLAGS= cargo
@@ -106,7 +106,7 @@ addresses-test: ## the project's addresses of crates/Cargo.toml, set in a copy, 
 desks: ## build `lizard` for Linux on ARM and for Windows, run it, compare what it writes; compile it for macOS
 	$(call prepared,.desks)
 clean: ## remove everything that was built
-	rm -rf target crates/target out dist tools/judge/node_modules web/node_modules web/tests/node_modules web/node/node_modules web/dist web/public
+	rm -rf target crates/target out dist tools/judge/node_modules web/node_modules web/tests/node_modules web/node/node_modules web/dist web/public web/generated
 
 # RUSTC_BOOTSTRAP opens the AVR parts of a stable compiler, for this build alone. The .hex is
 # replaced in one step, since in .ci/run another target may read it at that moment.

@@ -3,11 +3,12 @@
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { robotOf } from './wasm.js';
+import { initSync, Robot } from './generated/lizard.js';
 
 const [folder] = process.argv.slice(2);
-const { ask } = await robotOf(readFileSync(join(folder, 'lizard.wasm')));
+initSync({ module: readFileSync(join(folder, 'lizard.wasm')) });
+const robot = new Robot();
 for (const name of readdirSync(folder).filter((file) => file.endsWith('.toml'))) {
-  const { gaits } = ask('read', readFileSync(join(folder, name), 'utf8'));
-  writeFileSync(join(folder, name.replace(/toml$/, 'predictions.json')), JSON.stringify(gaits.map((_, gait) => ask('predict', gait))));
+  const { gaits } = robot.read(readFileSync(join(folder, name), 'utf8'));
+  writeFileSync(join(folder, name.replace(/toml$/, 'predictions.json')), JSON.stringify(gaits.map((_, gait) => robot.predict(gait))));
 }

@@ -14,8 +14,8 @@ export class Companion {
   ) {}
 
   /** Creates a companion that stands at the start, with the mass and the floor of the page's robot. Throws an error for the user. */
-  static async create(module: WebAssembly.Module, toml: string, floor: Floor, servos: string, volts: number): Promise<Companion> {
-    const robot = await Robot.load(module);
+  static create(toml: string, floor: Floor, servos: string, volts: number): Companion {
+    const robot = new Robot();
     const read = robot.read(toml);
     if (isRefused(read)) throw new Error(read.refused);
     robot.setFloor(floor);

@@ -1,27 +1,26 @@
-// Questions for a worker that arrive faster than it answers, as while the user drags. Of the questions that arrive
-// while it works, only the last is answered, and answers come in the order of their questions.
+// Questions that arrive faster than they are answered, as while the user drags. Of those that arrive while one is under way,
+// only the last is answered, and answers come in the order of their questions.
 
 export class LatestQuestion<Question, Answer> {
-  private readonly worker: Worker;
   private next: Question | null = null;
   private isBusy = false;
 
-  /** Sends the module of the robot first, then one question at a time. */
-  constructor(worker: Worker, module: WebAssembly.Module, onAnswer: (answer: Answer) => void) {
-    this.worker = worker;
-    worker.postMessage(module);
-    worker.addEventListener('message', ({ data }: MessageEvent<Answer>) => {
-      this.isBusy = false;
-      // The listener may ask again at once; that question replaces the waiting one.
-      onAnswer(data);
-      if (this.next !== null && !this.isBusy) this.ask(this.next);
-    });
-  }
+  constructor(
+    private readonly answer: (question: Question) => Promise<Answer>,
+    private readonly onAnswer: (answer: Answer) => void,
+  ) {}
 
   ask(question: Question): void {
-    this.next = this.isBusy ? question : null;
-    if (this.isBusy) return;
+    if (this.isBusy) this.next = question;
+    else void this.begin(question);
+  }
+
+  private async begin(question: Question): Promise<void> {
     this.isBusy = true;
-    this.worker.postMessage(question);
+    this.next = null;
+    const answer = await this.answer(question).finally(() => (this.isBusy = false));
+    // The listener may ask again at once; that question replaces the waiting one.
+    this.onAnswer(answer);
+    if (this.next !== null && !this.isBusy) void this.begin(this.next);
   }
 }

@@ -8,7 +8,7 @@ import type { Link } from './link/link';
 import { hasSerial, NO_SERIAL, PortLink } from './link/port-link';
 import { keepOffline } from './offline';
 import { Predictor } from './predictor';
-import { lags, Robot } from './robot';
+import { lags, load } from './robot';
 import { type BoardBanner, Session } from './session';
 import { messageOf } from './trouble';
 import { Alarm } from './view/alarm';
@@ -62,7 +62,7 @@ const troubles = new Troubles();
 
 async function start(): Promise<void> {
   const module = await files.wasm();
-  const robot = await Robot.load(module);
+  const robot = load(module);
   const choice = await Choice.load();
   const now = () => session;
   const address = new Address(now, choice.robot);
@@ -116,7 +116,7 @@ async function start(): Promise<void> {
   const parts = new PartsView(now);
   const fit = new FitView(now, parts);
   const sketch = new Sketch(module, now, fit);
-  const keep = new Keep(module, now, floor, (line) => drive.ask(line), () => pace.percent);
+  const keep = new Keep(now, floor, (line) => drive.ask(line), () => pace.percent);
   const calibrate = new Calibrate(now);
   let writing = false;
   const writer = new Writer(now, (busy) => {
@@ -152,7 +152,7 @@ async function start(): Promise<void> {
   document.addEventListener(OPENED, () => void openMeasure());
   const setup: Setup = new Setup(now, writer, () => connectBoard());
 
-  const boardRobot = new BoardRobot(now, module, troubles, ({ file, toml }) => {
+  const boardRobot = new BoardRobot(now, troubles, ({ file, toml }) => {
     choice.show(file);
     void replace(async () => {
       await choose();
@@ -349,7 +349,7 @@ async function start(): Promise<void> {
   // The robot in the address wins over a stored one.
   const isAsked = asked !== null || partsOf(location.hash).has('robot');
   if (before && session.file === before.file && !(await session.recall(before)) && !isAsked) {
-    const remedy = { label: 'Download what was changed', act: () => void download(robot, before.toml, before.floor) };
+    const remedy = { label: 'Download what was changed', act: () => void download(before.toml, before.floor) };
     const message = `${before.file}.toml is not the file of last time, so what was changed of it then is not taken.`;
     troubles.say('robot', message, remedy);
   }

@@ -1,47 +1,27 @@
-// Predicts each gait's displacement in a worker: a prediction takes tenths of a second, on a phone seconds, and the page
-// has 16 ms for a picture. Those of the files' own robots come with the page.
-import type { Floor, GaitPrediction } from './robot';
-
-/** The question: every gait of a robot on a floor; none ends the question before. */
-export interface Question {
-  toml: string;
-  floor: Floor;
-  /** The name of the servo model. */
-  servos: string;
-  gaits: number;
-  /** The gait to predict first. */
-  first: number;
-}
-
-/** The prediction of one gait, and the number of its question. */
-export interface Answer {
-  question: number;
-  gait: number;
-  prediction: GaitPrediction | null;
-}
+// Predicts each gait's displacement: on a phone this takes seconds. Those of the files' own robots come with the page.
+import type { Helper } from './helper';
+import type { GaitPrediction, OnFloor } from './robot';
+import { robotHelper } from './robot-helper';
+import type { RobotFunctions } from './robot-worker';
 
 export class Predictor {
-  private worker: Worker | null = null;
-  private question = 0;
+  private helper: Helper<RobotFunctions> | null = null;
+  private questions = 0;
 
   constructor(
     private readonly module: WebAssembly.Module,
     private readonly onPrediction: (gait: number, prediction: GaitPrediction) => void,
   ) {}
 
-  /** Asks a new question; the previous one is not answered any further. */
-  ask(question: Question): void {
-    this.question += 1;
-    if (question.gaits > 0) this.worker ??= this.start();
-    this.worker?.postMessage({ ...question, question: this.question });
-  }
-
-  private start(): Worker {
-    const worker = new Worker(new URL('./predictor-worker.ts', import.meta.url), { type: 'module' });
-    worker.postMessage(this.module);
-    worker.addEventListener('message', ({ data: { question, gait, prediction } }: MessageEvent<Answer>) => {
-      if (question === this.question && prediction) this.onPrediction(gait, prediction);
-    });
-    return worker;
+  /** Predicts every gait of a robot, from the first one wanted; a newer question ends it. */
+  async ask({ gaits, first, ...of }: OnFloor & { gaits: number; first: number }): Promise<void> {
+    const question = ++this.questions;
+    for (let n = 0; n < gaits; n++) {
+      const gait = (first + n) % gaits;
+      this.helper ??= robotHelper(this.module);
+      const prediction = await this.helper.ask((robot) => robot.predict({ ...of, gait }));
+      if (question !== this.questions) return;
+      if (prediction) this.onPrediction(gait, prediction);
+    }
   }
 }

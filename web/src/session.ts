@@ -15,7 +15,7 @@ import {
   isRefused,
   type Predictions,
   type Refused,
-  type Robot,
+  Robot,
 } from './robot';
 import { type Banner, banner, type Status, status, reportedPose } from './status';
 import { type Cause, messageOf } from './trouble';
@@ -665,7 +665,7 @@ export class Session {
     const from = this.path.findLastIndex(({ time }) => time <= start + this.step / 2);
     if (from < 0) return null;
     const lags = this.path.slice(from + 1).flatMap(({ frame }) => frame.lag.map(Math.abs));
-    const way = this.robot.between(this.path[from].frame.place, now.frame.place);
+    const way = Robot.between(this.path[from].frame.place, now.frame.place);
     return { ...way, lag: Math.max(0, ...lags) };
   }
 

@@ -227,7 +227,7 @@ test('sliders without an effect on rigid legs with ideal servos are disabled, wi
 
 test('predictions come with the page for an unchanged robot, and are computed for any other', async () => {
   const opened = await openStanding();
-  const made = () => opened.workers().filter((worker) => worker.url().includes('predictor-worker')).length;
+  const made = () => opened.workers().filter((worker) => worker.url().includes('robot-worker')).length;
   const notes = () => opened.locator('#gaits button[data-command] small').allInnerTexts();
   const robots = await opened.locator('#robot option').evaluateAll((options) => options.map(({ value }) => value));
   assert.ok(robots.includes('own-gaits') && robots.length > 4);

@@ -1,12 +1,12 @@
 // Images of robots as the page makes them, made here from the page's own files.
 import { load } from '../../tools/judge/src/hex.js';
-import { file, robot } from './wasm.js';
+import { file, Robot } from './wasm.js';
 
 /** Makes the image of flash for a robot file of the page. */
 export async function imageOf(name) {
-  const { ask } = await robot();
-  const { start } = ask('read', await file(`${name}.toml`, 'utf8'));
-  const section = ask('section');
+  const robot = new Robot();
+  const { start } = robot.read(await file(`${name}.toml`, 'utf8'));
+  const section = robot.section();
   const flash = new Uint8Array(32 * 1024).fill(0xff);
   load(await file('code.hex', 'utf8'), flash);
   flash.set(section, start);

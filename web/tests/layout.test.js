@@ -41,7 +41,7 @@ for (const [letters, height] of [
       await opened.route(/predictions/, (route) => route.fulfill({ status: 404 }));
       let predict;
       const asked = new Promise((done) => (predict = done));
-      await opened.route(/predictor-worker/, (route) => asked.then(() => route.continue()));
+      await opened.route(/robot-worker/, (route) => asked.then(() => route.continue()));
       await opened.goto(`${address()}#room=drive`);
       await opened.waitForFunction(() => document.querySelector('#floor').dataset.zoom);
       const first = await places(opened);

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { after, afterEach, test } from 'node:test';
 
 import { address, close, complaints, open, page, closePages } from './browser.js';
-import { file, robot } from './wasm.js';
+import { file, memory, Robot } from './wasm.js';
 
 afterEach(closePages);
 after(close);
@@ -11,21 +11,21 @@ after(close);
 const toml = await file('robot.toml', 'utf8');
 
 /** Measures the growth of the memory over a number of repetitions, bytes, after a warm-up. */
-async function memoryGrowth(times, action) {
-  const page = await robot();
-  page.ask('read', toml);
+function memoryGrowth(times, action) {
+  const page = new Robot();
+  page.read(toml);
   const warm = times / 10;
   for (let n = 0; n < warm; n++) action(page, n);
-  const before = page.memory.buffer.byteLength;
+  const before = memory.buffer.byteLength;
   for (let n = warm; n < warm + times; n++) action(page, n);
-  return page.memory.buffer.byteLength - before;
+  return memory.buffer.byteLength - before;
 }
 
 test('ten thousand robots with different lengths use no more memory', async () => {
   // With `stand` alone, because other gaits would only take time.
   const standing = toml.slice(0, toml.indexOf('[gait.walk]'));
-  const grew = await memoryGrowth(10_000, (page, n) => {
-    const { text, refusal } = page.ask('lengths', [standing, [['links.l0', 20 + n / 5000]], false]);
+  const grew = memoryGrowth(10_000, (_, n) => {
+    const { text, refusal } = Robot.lengths(standing, [['links.l0', 20 + n / 5000]], false);
     assert.equal(refusal, null);
     assert.ok(text.includes('[gait.stand]') && text.includes('l0 = 2'));
   });
@@ -34,13 +34,29 @@ test('ten thousand robots with different lengths use no more memory', async () =
 
 test('refused gaits and those tried for an offer use no more memory', async () => {
   let bars;
-  const grew = await memoryGrowth(100, (page, n) => {
-    bars ??= page.ask('bars', 1);
-    const { refused, instead } = page.ask('trial', { ...bars, amplitude: 30 + n / 20 });
+  const grew = memoryGrowth(100, (page, n) => {
+    bars ??= page.bars(1);
+    const { refused, instead } = page.trial({ ...bars, amplitude: 30 + n / 20 });
     assert.match(refused, /margin/);
     assert.equal(instead[0].what, 'amplitude');
   });
   assert.equal(grew, 0);
+});
+
+test('an argument of another form is refused and changes nothing', () => {
+  const robot = new Robot();
+  assert.equal(robot.predict(1), null, 'without a robot there is no answer');
+  const { floor } = robot.read(toml);
+  const first = robot.predict(1);
+  assert.ok(first.forward > 10);
+  for (const wrong of [null, {}, { ...floor, kind: 'soft' }, { ...floor, twist: undefined }]) {
+    assert.throws(() => robot.setFloor(wrong), /Error/, JSON.stringify(wrong));
+  }
+  assert.throws(() => robot.pulses([1, 2, 3]), /Error/);
+  assert.match(robot.read('').refused, /./);
+  assert.deepEqual(robot.predict(1), first);
+  robot.setFloor({ ...floor, ratio: 0.5 });
+  assert.notDeepEqual(robot.predict(1), first);
 });
 
 /** Time in each room, in each of two rounds, s. In the first the page fills what it keeps: the last pulses, the log, the track. */

@@ -74,7 +74,7 @@ test('lengths that cannot be printed are reported at once, with the nearest that
     const path = join(tried, 'robot.toml');
     const toml = await page.evaluate((mm) => {
       const { robot, toml } = window.lizard;
-      return robot.lengths(toml, [['leg.crank', mm], ['leg.follower', mm]], false).text;
+      return robot.constructor.lengths(toml, [['leg.crank', mm], ['leg.follower', mm]], false).text;
     }, mm);
     await writeFile(path, toml);
     const made = promisify(execFile)(resolve(ROOT, process.env.LIZARD), ['parts', join(tried, 'parts'), '--robot', path]);
@@ -152,7 +152,7 @@ test('the files that a changed length affects are listed, and can be downloaded 
   const page = await openStanding();
   await unfold(page, '#parts');
   assert.ok(await page.locator('#parts-changed').isHidden(), 'nothing is changed');
-  assert.equal(await page.evaluate(() => window.lizard.change(window.lizard.robot.lengths(window.lizard.toml, [['leg.crank', 46], ['leg.follower', 46]], false).text)), null);
+  assert.equal(await page.evaluate(() => window.lizard.change(window.lizard.robot.constructor.lengths(window.lizard.toml, [['leg.crank', 46], ['leg.follower', 46]], false).text)), null);
   const download = page.waitForEvent('download');
   await page.locator('#parts-changed').click();
   const saved = await download;

@@ -28,7 +28,7 @@ const onScreen = (page, [x, y]) =>
 /** Draws a closed line about the head's neutral point with the mouse. */
 async function draw(page, radius, corners = 40) {
   await page.locator('#path-plane').evaluate((plane) => plane.scrollIntoView({ block: 'center' }));
-  const [x, y] = await page.evaluate(() => window.lizard.robot.room('head').neutral);
+  const [x, y] = await page.evaluate(() => window.lizard.robot.reachArea(0).neutral);
   for (let n = 0; n <= corners; n++) {
     const turn = (2 * Math.PI * n) / corners;
     await page.mouse.move(...(await onScreen(page, [x + radius * Math.cos(turn), y + radius * Math.sin(turn)])));

@@ -26,7 +26,7 @@ const waitForSteps = (page, wanted) =>
     JSON.stringify(wanted),
   );
 /** Reads the steps in the text of the robot. */
-const readSteps = (page) => page.evaluate(() => window.lizard.robot.routines(window.lizard.toml).at(-1)?.steps);
+const readSteps = (page) => page.evaluate(() => window.lizard.robot.constructor.routines(window.lizard.toml).at(-1)?.steps);
 const waitForPrediction = (page) => page.waitForFunction(() => document.querySelector('#routine-round').textContent !== '');
 const track = (page) => page.locator('#routine-path .track').getAttribute('d');
 
@@ -34,7 +34,7 @@ const track = (page) => page.locator('#routine-path .track').getAttribute('d');
 async function putRoutine(page, steps, name = 'patrol') {
   await page.evaluate(([name, steps]) => {
     const { lizard } = window;
-    return lizard.change(lizard.robot.putSteps(lizard.toml, { name, steps }).text).then(() => null);
+    return lizard.change(lizard.robot.constructor.putSteps(lizard.toml, name, steps).text).then(() => null);
   }, [name, steps]);
 }
 

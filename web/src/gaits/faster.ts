@@ -1,19 +1,16 @@
 // A search for a gait that walks faster than the edited one, in a worker of its own that ends with the search.
-import type { Bars, Floor, Found, Trial, SearchTask } from '../robot';
+import type { SearchTask } from '../../generated/tune';
+import { Helper } from '../helper';
+import type { OnFloor, Trial } from '../robot';
 import { messageOf } from '../trouble';
+import type { Best, FasterFunctions } from './faster-worker';
 
-export interface Question {
-  module: WebAssembly.Module;
-  toml: string;
-  floor: Floor;
-  servos: string;
-  wish: SearchTask;
-}
+export type { Best };
 
-/** A gait that the search found, with its trial on the page's floor and servos. */
-export interface Best extends Found {
-  trial: Trial;
-}
+/** Gaits between two reports of the best so far: one population of the search. */
+const LOOK = 20;
+/** Random robots for a report and for the final comparison, which has as many as `lizard tune`. */
+const ROBOTS = { look: 20, end: 200 };
 
 export type Answer =
   | { of: 'start'; all: number; rate: number; before: Trial }
@@ -24,43 +21,45 @@ export type Answer =
   | { of: 'end'; refused: string };
 
 export class FasterSearch {
-  private readonly worker = new Worker(new URL('./faster-worker.ts', import.meta.url), { type: 'module' });
+  private readonly helper = new Helper<FasterFunctions>(new Worker(new URL('./faster-worker.ts', import.meta.url), { type: 'module' }));
+  private isStopped = false;
 
   /** Starts the search of `module`; `onAnswer` gets every answer, the last one included. */
-  constructor(
-    module: Promise<WebAssembly.Module>,
-    readonly question: Omit<Question, 'module'>,
-    onAnswer: (answer: Answer) => void,
-  ) {
-    this.worker.addEventListener('message', ({ data }: MessageEvent<Answer>) => {
-      if (data.of === 'end') this.drop();
-      onAnswer(data);
-    });
-    this.worker.addEventListener('error', ({ message }) => {
-      this.drop();
-      onAnswer({ of: 'end', refused: message || 'the worker could not be loaded' });
-    });
-    module.then(
-      (module) => this.worker.postMessage({ ...question, module } satisfies Question),
-      (error: unknown) => {
+  constructor(module: Promise<WebAssembly.Module>, question: OnFloor & { task: SearchTask }, onAnswer: (answer: Answer) => void) {
+    this.search(module, question, onAnswer)
+      .catch((error: unknown): Answer => ({ of: 'end', refused: messageOf(error) }))
+      .then((end) => {
         this.drop();
-        onAnswer({ of: 'end', refused: messageOf(error) });
-      },
-    );
+        onAnswer(end);
+      });
   }
 
-  /** The gait to beat. */
-  get bars(): Bars {
-    return this.question.wish.bars;
-  }
-
-  /** Ends the search; the worker answers with the best so far. */
+  /** Ends the search with the best so far. */
   stop(): void {
-    this.worker.postMessage('stop');
+    this.isStopped = true;
   }
 
   /** Ends the search without an answer. */
   drop(): void {
-    this.worker.terminate();
+    this.helper.end();
+  }
+
+  private async search(module: Promise<WebAssembly.Module>, question: OnFloor & { task: SearchTask }, say: (answer: Answer) => void): Promise<Answer> {
+    const { helper } = this;
+    const loaded = await module;
+    const begun = await helper.ask((search) => search.begin(loaded, question));
+    say({ of: 'start', ...begun });
+    let [shown, done] = [-Infinity, 0];
+    while (done < begun.all && !this.isStopped) {
+      const tried = await helper.ask((search) => search.step());
+      done = tried.done;
+      say({ of: 'progress', done });
+      if (done % LOOK !== 0 || done === begun.all || tried.best === null || tried.best <= shown) continue;
+      shown = tried.best;
+      const best = await helper.ask((search) => search.best(ROBOTS.look));
+      if (best) say({ of: 'best', best });
+    }
+    const best = await helper.ask((search) => search.best(ROBOTS.end));
+    return { of: 'end', best, done };
   }
 }

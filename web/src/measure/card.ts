@@ -1,5 +1,5 @@
 // Formats the results as a table, as an SVG picture to share, and as CSV for a spreadsheet.
-import type { Part, Report } from './question';
+import type { Part, Report } from '../../generated/measure';
 
 const WIDTH = 700;
 const LINE = 22;

@@ -1,6 +1,7 @@
 // The tags of the last pictures: which are missing, where the robot is, and how it went there. Lengths are those of the
 // picture, with the floor's tags as the scale: near enough to say that the robot is about to leave, not to measure it.
-import type { Pixel, Sight, Tag } from './question';
+import type { Pixel, TagEntry as Tag } from '../../generated/measure';
+import type { Sight } from './worker';
 
 /** Names of the tags by their ids. */
 const NAMES = ['the left tag of strip 1', 'the right tag of strip 1', 'the left tag of strip 2', 'the right tag of strip 2', 'the tag on the deck'];

@@ -1,56 +1,22 @@
-// The worker of Film: tags and paths in WebAssembly, so that the page stays smooth.
-import { messageOf } from '../trouble';
-import type { Answer, Question, Sight, Tag } from './question';
+// The worker of the room Measure: tags and paths in WebAssembly, so that the page stays smooth. No picture leaves the machine.
+import { expose } from 'comlink';
 
-interface Exports {
-  memory: WebAssembly.Memory;
-  measure_input(length: number): number;
-  measure_output(): number;
-  measure_output_length(): number;
-  measure_picture(width: number, height: number, isGrey: boolean, seconds: number, isKept: boolean): void;
-  measure_ask(): void;
-  measure_sheet(isLetter: boolean): void;
+import { type Asked, Camera, initSync, type TagEntry } from '../../generated/measure';
+
+/** The tags of a picture, the picture's size, and the time that it took, ms. */
+export interface Sight {
+  tags: TagEntry[];
+  size: [number, number];
+  ms: number;
 }
 
-let wasm: Promise<Exports>;
-/** The answers so far: a question waits for them. */
-let before: Promise<unknown> = Promise.resolve();
+let camera: Camera;
 /** The formats of pictures whose brightness is a plane of its own. */
 const PLANES = ['I420', 'I420A', 'I422', 'I444', 'NV12'];
 let planes = new Uint8Array();
 const canvas = new OffscreenCanvas(1, 1);
 // Its pixels are read, so it is none of the graphics chip.
 const pen = canvas.getContext('2d', { willReadFrequently: true });
-
-addEventListener('message', ({ data }: MessageEvent<WebAssembly.Module | Question>) => {
-  if (data instanceof WebAssembly.Module) wasm = WebAssembly.instantiate(data, {}).then(({ exports }) => exports as unknown as Exports);
-  else before = before.then(() => answer(data)).then((well): Answer => ({ well }), (error: unknown): Answer => ({ refused: messageOf(error) })).then((said) => postMessage(said));
-});
-
-async function answer(question: Question): Promise<unknown> {
-  const exports = await wasm;
-  switch (question.ask) {
-    case 'picture':
-      return look(exports, question);
-    case 'sheet':
-      exports.measure_sheet(question.isLetter);
-      return output(exports).slice();
-    case 'clear':
-      return ask(exports, 'clear');
-    case 'measure':
-      return ask(exports, { measure: question.asked });
-  }
-}
-
-async function look(exports: Exports, { picture, seconds, isKept }: Question & { ask: 'picture' }): Promise<Sight> {
-  const begun = performance.now();
-  const [width, height] = 'codedWidth' in picture ? [picture.displayWidth, picture.displayHeight] : [picture.width, picture.height];
-  const grey = 'codedWidth' in picture ? await greyOf(picture).catch(() => null) : null;
-  input(exports, grey ?? coloursOf(picture, width, height));
-  picture.close();
-  exports.measure_picture(width, height, grey !== null, seconds, isKept);
-  return { tags: json<Tag[]>(exports), size: [width, height], ms: performance.now() - begun };
-}
 
 /** The brightness of each pixel, which a camera or a film has as a plane of its own; null if this picture has none, or is turned. */
 async function greyOf(picture: VideoFrame): Promise<Uint8Array | null> {
@@ -65,28 +31,52 @@ async function greyOf(picture: VideoFrame): Promise<Uint8Array | null> {
 }
 
 /** The pixels of a picture, four bytes for each. */
-function coloursOf(picture: VideoFrame | ImageBitmap, width: number, height: number): Uint8ClampedArray {
+function coloursOf(picture: VideoFrame | ImageBitmap, width: number, height: number): Uint8Array {
   if (!pen) throw new Error('this browser cannot read the pixels of a picture');
   if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
   pen.drawImage(picture, 0, 0);
-  return pen.getImageData(0, 0, width, height).data;
+  return new Uint8Array(pen.getImageData(0, 0, width, height).data.buffer);
 }
 
-function ask(exports: Exports, question: unknown): unknown {
-  input(exports, new TextEncoder().encode(JSON.stringify(question)));
-  exports.measure_ask();
-  return json(exports);
+/** The questions so far: the next one waits for them. */
+let before: Promise<unknown> = Promise.resolve();
+
+function inTurn<Answer>(act: () => Answer | Promise<Answer>): Promise<Answer> {
+  const answer = before.then(act);
+  before = answer.catch(() => {});
+  return answer;
 }
 
-function input({ measure_input, memory }: Exports, bytes: ArrayLike<number> & { length: number }): void {
-  const at = measure_input(bytes.length);
-  new Uint8Array(memory.buffer).set(bytes, at);
-}
+const functions = {
+  load(module: WebAssembly.Module): void {
+    initSync({ module });
+    camera = new Camera();
+  },
 
-const output = ({ memory, measure_output, measure_output_length }: Exports) => new Uint8Array(memory.buffer, measure_output(), measure_output_length());
+  /** Finds the tags of a picture that was taken at a time, s; one that is kept belongs to the film. */
+  look: (picture: VideoFrame | ImageBitmap, seconds: number, isKept: boolean) =>
+    inTurn(async (): Promise<Sight> => {
+      const begun = performance.now();
+      const [width, height] = 'codedWidth' in picture ? [picture.displayWidth, picture.displayHeight] : [picture.width, picture.height];
+      const grey = 'codedWidth' in picture ? await greyOf(picture).catch(() => null) : null;
+      const pixels = grey ?? coloursOf(picture, width, height);
+      picture.close();
+      return { tags: camera.look(width, height, pixels, seconds, isKept), size: [width, height], ms: performance.now() - begun };
+    }),
 
-function json<T>(exports: Exports): T {
-  const said = JSON.parse(new TextDecoder().decode(output(exports))) as T | { refused: string };
-  if (said !== null && typeof said === 'object' && 'refused' in said) throw new Error(said.refused);
-  return said as T;
-}
+  /** Begins a new film. */
+  clear: () =>
+    inTurn(() => {
+      camera.free();
+      camera = new Camera();
+    }),
+
+  /** Measures gaits in the film. Throws the reason where the film does not show what is needed. */
+  measure: (asked: Asked) => inTurn(() => camera.measure(asked)),
+
+  /** The sheet of tags as PDF, for A4 or for letter paper. */
+  sheet: (isLetter: boolean) => Camera.sheet(isLetter) as Uint8Array<ArrayBuffer>,
+};
+
+export type FilmFunctions = typeof functions;
+expose(functions);

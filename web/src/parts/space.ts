@@ -21,7 +21,8 @@ import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 
 import type { Place } from '../robot';
 import { palette, servoColour } from '../view/palette';
-import type { Body, Model, Solid } from './model';
+import type { BodyEntry } from '../../generated/parts';
+import type { Model, Solid } from './workshop';
 import { PaintBudget } from './paint-budget';
 
 /** Lift of a body of lift 1 in the exploded view, mm, as in the guide's pictures. */
@@ -266,7 +267,7 @@ export class Space {
 }
 
 /** The colour of a printed part's servo, as in the drawing, or of a bought part's material. */
-function colour({ kind, servo }: Body): string {
+function colour({ kind, servo }: BodyEntry): string {
   const { 'skin-edge': plate, tube, steel } = palette();
   switch (kind) {
     case 'printed':

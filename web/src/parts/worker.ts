@@ -1,63 +1,64 @@
-// The worker of Workshop: the parts in WebAssembly.
+// The worker of the workshop: the parts in WebAssembly. A robot whose parts cannot be made is thrown as a `Refused`.
+import { expose, transfer } from 'comlink';
 import { zipSync } from 'fflate';
 
-import { messageOf } from '../trouble';
-import { PartsModel, Unfit } from './model';
-import type { Answer, Question } from './workshop';
+import { initSync, Parts } from '../../generated/parts';
 
-/** The model of the page; null until it is read. */
-let current: PartsModel | null = null;
-
-const say = (answer: Answer, transfer: Transferable[] = []) => postMessage(answer, { transfer });
-
-addEventListener('message', ({ data }: MessageEvent<Question>) => {
-  void answer(data).catch((error: unknown) => say({ of: data.ask, refused: messageOf(error), meeting: error instanceof Unfit ? error.meeting : null }));
-});
-
-async function answer(question: Question): Promise<void> {
-  switch (question.ask) {
-    case 'model': {
-      current = null;
-      current = await PartsModel.read(question.module, question.toml);
-      const solids = current.solids();
-      const transfer = solids.flatMap(({ corners, triangles }) => [corners.buffer, triangles.buffer]);
-      say({ of: 'model', model: current.model, solids }, transfer);
-      break;
-    }
-    case 'pose':
-      say({ of: 'pose', places: current?.pose(question.angles, question.lags) ?? null });
-      break;
-    case 'fit':
-      say({ of: 'fit', least: (await PartsModel.read(question.module, question.toml)).prove() });
-      break;
-    case 'files': {
-      const { module, toml, before } = question;
-      const parts = await PartsModel.read(module, toml, (done, all) => {
-        say({ of: 'progress', doing: 'prove', done, all });
-      });
-      const least = parts.prove();
-      const files = filesOf(parts);
-      const count = Object.keys(files).length;
-      if (before !== null) {
-        const known = filesOf(await PartsModel.read(module, before));
-        for (const [path, bytes] of Object.entries(known)) if (isSame(bytes, files[path])) delete files[path];
-      }
-      // A fixed date, so that the same files make the same archive.
-      const zip = zipSync(files, { mtime: '1980-01-02T00:00:00' });
-      say({ of: 'files', zip, paths: Object.keys(files), count, least }, [zip.buffer]);
-    }
-  }
+/** Progress of the making of a robot's files. */
+export interface Progress {
+  doing: 'prove' | 'make';
+  done: number;
+  all: number;
 }
 
+/** The parts whose solids are shown; null until they are made. */
+let shown: Parts | null = null;
+
 /** Makes all files of a robot, by their paths. */
-function filesOf(parts: PartsModel): Record<string, Uint8Array> {
+function filesOf(parts: Parts, progress: (progress: Progress) => void): Record<string, Uint8Array> {
   const made: Record<string, Uint8Array> = {};
-  const all = parts.model.files;
+  const all = parts.entry().files;
   for (let number = 0; number < all; number++) {
-    say({ of: 'progress', doing: 'make', done: number, all });
+    progress({ doing: 'make', done: number, all });
     for (const { path, bytes } of parts.files(number)) made[path] = bytes;
   }
   return made;
 }
 
 const isSame = (one: Uint8Array, other: Uint8Array | undefined) => one.length === other?.length && one.every((byte, at) => byte === other[at]);
+
+const functions = {
+  load: (module: WebAssembly.Module) => void initSync({ module }),
+
+  /** Makes the parts to show. */
+  model(toml: string) {
+    shown = null;
+    shown = new Parts(toml);
+    const solids = shown.solids().map(({ corners, triangles }) => ({ corners, triangles }));
+    return transfer({ model: shown.entry(), solids }, solids.flatMap(({ corners, triangles }) => [corners.buffer, triangles.buffer]));
+  },
+
+  /** The places of the mounts of the parts to show; null where a loop does not close. */
+  pose: (angles: number[], lags: number[]) => shown?.pose(angles, lags) ?? null,
+
+  /** Proves that the parts of a robot fit; returns the least distance of two, mm. */
+  fit: (toml: string) => new Parts(toml).prove(() => {}) ?? null,
+
+  /** Proves that the parts fit, makes all files and packs them, or only those that are not the same for the robot `before`. */
+  make(toml: string, before: string | null, progress: (progress: Progress) => void) {
+    const parts = new Parts(toml);
+    const least = parts.prove((done, all) => progress({ doing: 'prove', done, all })) ?? null;
+    const files = filesOf(parts, progress);
+    const count = Object.keys(files).length;
+    if (before !== null) {
+      const known = filesOf(new Parts(before), progress);
+      for (const [path, bytes] of Object.entries(known)) if (isSame(bytes, files[path])) delete files[path];
+    }
+    // A fixed date, so that the same files make the same archive.
+    const zip = zipSync(files, { mtime: '1980-01-02T00:00:00' }) as Uint8Array<ArrayBuffer>;
+    return transfer({ zip, paths: Object.keys(files), count, least }, [zip.buffer]);
+  },
+};
+
+export type PartsFunctions = typeof functions;
+expose(functions);

@@ -1,76 +1,58 @@
 // Asks a worker for the robot's parts: solids, places at a pose, and all files as one archive.
+import { proxy, type Remote } from 'comlink';
+
+import type { Meeting, ModelEntry, Refused } from '../../generated/parts';
 import { files } from '../files';
-import { type Model, type NotMade, type Solid, Unfit } from './model';
+import { Helper } from '../helper';
+import type { PartsFunctions, Progress } from './worker';
 
-export { Unfit };
+export type { Meeting, Progress };
+export type Model = ModelEntry;
+/** The triangles of a solid: corners in mm, and three corner indices for each triangle. */
+export type Solid = { corners: Float32Array; triangles: Uint32Array };
+/** Files in an archive, the number of all files that the robot has, and the least distance that was proved, mm. */
+export type Made = ReturnType<PartsFunctions['make']>;
 
-export type Question =
-  | { ask: 'model'; module: WebAssembly.Module; toml: string }
-  | { ask: 'pose'; angles: number[]; lags: number[] }
-  | { ask: 'fit'; module: WebAssembly.Module; toml: string }
-  | { ask: 'files'; module: WebAssembly.Module; toml: string; before: string | null };
+/** Thrown for a robot whose parts cannot be made; its message is for the user. */
+export class Unfit extends Error {
+  readonly meeting: Meeting | null;
 
-export type Answer =
-  | { of: 'model'; model: Model; solids: Solid[] }
-  | { of: 'pose'; places: Float64Array | null }
-  | { of: 'fit'; least: number | null }
-  | { of: 'progress'; doing: 'prove' | 'make'; done: number; all: number }
-  | { of: 'files'; zip: Uint8Array<ArrayBuffer>; paths: string[]; count: number; least: number | null }
-  | ({ of: Question['ask'] } & NotMade);
-
-/** Progress of the making of a robot's files. */
-export interface Progress {
-  doing: 'prove' | 'make';
-  done: number;
-  all: number;
+  constructor({ refused, meeting }: Refused) {
+    super(refused);
+    this.meeting = meeting;
+  }
 }
 
-/** Files in an archive, and the least distance that was proved, mm. */
-export interface Made {
-  zip: Uint8Array<ArrayBuffer>;
-  /** The paths in the archive. */
-  paths: string[];
-  /** The number of all files that the robot has. */
-  count: number;
-  least: number | null;
-}
+/** A worker with the parts; what it refuses is thrown as an {@link Unfit}. */
+class Workshop extends Helper<PartsFunctions> {
+  constructor() {
+    super(new Worker(new URL('./worker.ts', import.meta.url), { type: 'module' }));
+  }
 
-function worker(): Worker {
-  return new Worker(new URL('./worker.ts', import.meta.url), { type: 'module' });
-}
-
-/** Asks a worker and calls `onAnswer` with each answer, up to the last. Throws {@link Unfit}. */
-function asked<T extends Answer>(of: Worker, question: Question, onAnswer: (answer: Answer) => void = () => {}): Promise<T> {
-  return new Promise((resolve, reject) => {
-    const listen = ({ data }: MessageEvent<Answer>) => {
-      onAnswer(data);
-      if (data.of !== question.ask) return;
-      of.removeEventListener('message', listen);
-      if ('refused' in data) reject(new Unfit(data.refused, data.meeting));
-      else resolve(data as T);
-    };
-    of.addEventListener('message', listen);
-    of.addEventListener('error', ({ message }) => reject(new Error(message || 'the worker could not be loaded')), { once: true });
-    of.postMessage(question);
-  });
+  /** Calls a function after loading the parts. */
+  async first<Answer>(call: (parts: Remote<PartsFunctions>) => Promise<Answer>): Promise<Answer> {
+    const module = await files.parts();
+    await this.ask((parts) => parts.load(module));
+    return this.ask(call).catch((error: Error | Refused) => {
+      throw 'refused' in error ? new Unfit(error) : error;
+    });
+  }
 }
 
 /** A robot's solids and their places at a pose. */
 export class Solids {
-  private readonly worker = worker();
   private asking = false;
 
-  private constructor() {}
+  private constructor(private readonly workshop: Workshop) {}
 
-  /** Makes the solids of a robot.toml. Throws the message of a robot that cannot be built. */
+  /** Makes the solids of a robot.toml, in the order of `BodyEntry.solid`. Throws the message of a robot that cannot be built. */
   static async of(toml: string): Promise<{ solids: Solids; model: Model; meshes: Solid[] }> {
-    const solids = new Solids();
+    const workshop = new Workshop();
     try {
-      const question: Question = { ask: 'model', module: await files.parts(), toml };
-      const { model, solids: meshes } = await asked<{ of: 'model'; model: Model; solids: Solid[] }>(solids.worker, question);
-      return { solids, model, meshes };
+      const { model, solids } = await workshop.first((parts) => parts.model(toml));
+      return { solids: new Solids(workshop), model, meshes: solids };
     } catch (error) {
-      solids.end();
+      workshop.end();
       throw error;
     }
   }
@@ -79,36 +61,28 @@ export class Solids {
   async pose(angles: number[], lags: number[]): Promise<Float64Array | null> {
     if (this.asking) return null;
     this.asking = true;
-    try {
-      const { places } = await asked<{ of: 'pose'; places: Float64Array | null }>(this.worker, { ask: 'pose', angles, lags });
-      return places;
-    } finally {
-      this.asking = false;
-    }
+    return this.workshop.ask((parts) => parts.pose(angles, lags)).finally(() => (this.asking = false));
   }
 
   end(): void {
-    this.worker.terminate();
+    this.workshop.end();
   }
 }
 
-/** Proves that the parts of a robot.toml fit: the least distance of two, mm. Throws {@link Unfit}; `stop` ends it without an answer. */
-export function fit(toml: string): { fits: Promise<number | null>; stop: () => void } {
-  const prover = worker();
-  const proved = files.parts().then((module) => asked<{ of: 'fit'; least: number | null }>(prover, { ask: 'fit', module, toml }));
-  return { fits: proved.then(({ least }) => least).finally(() => prover.terminate()), stop: () => prover.terminate() };
+/** An answer to come; `stop` ends the work without one. */
+interface Work<Answer> {
+  answer: Promise<Answer>;
+  stop: () => void;
 }
 
-/**
- * Proves that the parts fit, makes all files and packs them, or only those that are not the same for the robot `before`. `stop` ends it
- * without an answer.
- */
-export function make(toml: string, before: string | null, progress: (progress: Progress) => void): { made: Promise<Made>; stop: () => void } {
-  const maker = worker();
-  const made = files.parts().then((module) =>
-    asked<{ of: 'files' } & Made>(maker, { ask: 'files', module, toml, before }, (answer) => {
-      if (answer.of === 'progress' && 'doing' in answer) progress(answer);
-    }),
-  );
-  return { made: made.finally(() => maker.terminate()), stop: () => maker.terminate() };
+function work<Answer>(call: (parts: Remote<PartsFunctions>) => Promise<Answer>): Work<Answer> {
+  const workshop = new Workshop();
+  return { answer: workshop.first(call).finally(() => workshop.end()), stop: () => workshop.end() };
 }
+
+/** Proves that the parts of a robot.toml fit: the least distance of two, mm. Throws {@link Unfit}. */
+export const fit = (toml: string): Work<number | null> => work((parts) => parts.fit(toml));
+
+/** Proves that the parts fit, makes all files and packs them, or only those that are not the same for the robot `before`. */
+export const make = (toml: string, before: string | null, progress: (progress: Progress) => void): Work<Made> =>
+  work((parts) => parts.make(toml, before, proxy(progress)));

@@ -15,12 +15,11 @@ interface Known {
 
 export class BoardRobot {
   /** A separate reader, since reading a robot replaces the reader's previous one. */
-  private reader: Promise<Robot> | null = null;
+  private readonly reader = new Robot();
 
   /** `show` loads a robot into the page. */
   constructor(
     private readonly session: () => Session,
-    private readonly module: WebAssembly.Module,
     private readonly troubles: Troubles,
     private readonly show: (known: Known) => void,
   ) {}
@@ -39,9 +38,8 @@ export class BoardRobot {
 
   /** Looks for a robot among the user's own ones and the files of the list. */
   private async find(hash: string): Promise<Known | null> {
-    const reader = await (this.reader ??= Robot.load(this.module));
     const isIt = (toml: string) => {
-      const read = reader.read(toml);
+      const read = this.reader.read(toml);
       return !isRefused(read) && read.hash === hash;
     };
     const own = kept.aside().find(({ toml }) => isIt(toml));

@@ -1,13 +1,13 @@
 // Saves files, and a robot.toml with the values of the page's sliders.
-import { type Floor, isRefused, type Refused, type Robot } from '../robot';
+import { type Floor, isRefused, type Refused, Robot } from '../robot';
 import { make } from './make';
 
 /**
  * Saves a robot.toml with this floor, mass and leg drive; null leaves those of the text. If they cannot be
  * written into it, the text is saved unchanged and the reason is returned.
  */
-export function download(robot: Robot, toml: string, floor: Floor | null): Refused | null {
-  const whole = floor && robot.editFloor(toml, floor);
+export function download(toml: string, floor: Floor | null): Refused | null {
+  const whole = floor && Robot.editFloor(toml, floor);
   const refused = whole && (isRefused(whole) ? whole : whole.refusal);
   const text = !whole || isRefused(whole) || refused ? toml : whole.text;
   save('robot.toml', [text], 'application/toml');

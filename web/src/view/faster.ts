@@ -78,7 +78,7 @@ export class FasterView {
     this.module ??= files.tune();
     // A failed download is tried again next time.
     this.module.catch(() => (this.module = null));
-    this.search = new FasterSearch(this.module, { toml, floor, servos, wish: { bars, ...this.numbers } }, (answer) => this.handle(answer));
+    this.search = new FasterSearch(this.module, { toml, floor, servos, task: { bars, ...this.numbers } }, (answer) => this.handle(answer));
   }
 
   private handle(answer: Answer): void {

@@ -1,7 +1,7 @@
 // The parts of changed lengths: a worker proves that they fit, also while a length is dragged. If they do not, the two that meet are
 // red in 3D, and the nearest lengths that fit are searched.
-import type { Meeting } from '../parts/model';
-import type { Length } from '../robot';
+import type { Meeting } from '../parts/workshop';
+import { type Length, Robot } from '../robot';
 import type { Session } from '../session';
 import { messageOf } from '../trouble';
 import { element } from './canvas';
@@ -110,9 +110,9 @@ export class FitView {
   private async proved(toml: string, work: Work) {
     const { fit, Unfit } = await import('../parts/workshop');
     if (work.isOver) return null;
-    const { fits, stop } = fit(toml);
+    const { answer, stop } = fit(toml);
     work.stop = stop;
-    return fits.catch((error: unknown) => {
+    return answer.catch((error: unknown) => {
       if (error instanceof Unfit) return error;
       throw error;
     });
@@ -156,7 +156,7 @@ export class FitView {
 
   /** Bisects between the last lengths that fit and the wanted ones, down to one step; `isOpen` if the wanted ones may fit, too. */
   private async nearest(wanted: Lengths, work: Work, isOpen = false): Promise<{ lengths: Lengths; text: string }> {
-    const { robot, toml } = this.session();
+    const { toml } = this.session();
     const between = (share: number): Lengths =>
       new Map([...wanted].map(([key, to]) => {
         const from = this.fitting.get(key) ?? to;
@@ -164,7 +164,7 @@ export class FitView {
       }));
     const at = (share: number) => {
       const lengths = between(share);
-      const { text, refusal } = robot.lengths(toml, [...lengths], false);
+      const { text, refusal } = Robot.lengths(toml, [...lengths], false);
       return { lengths, text, isRobot: refusal === null };
     };
     const fits = async ({ text, isRobot }: ReturnType<typeof at>) => isRobot && !((await this.proved(text, work)) instanceof Error);

@@ -1,6 +1,6 @@
 // The gait editor: the circle is the cycle, and each leg is a bar on it.
 import { kept } from '../kept';
-import type { Bars, Description, Four } from '../robot';
+import { type Bars, type Description, type Four, Robot } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
 import { type Edited, FasterView } from './faster';
@@ -67,7 +67,7 @@ export class GaitsView {
     }
     LEGS.forEach((_, leg) => this.leg(leg));
     element('gait-mirror').addEventListener('click', () => this.mirror());
-    element('gait-turn-round').addEventListener('click', () => this.gait && this.change(this.session().robot.turnedRound(this.gait)));
+    element('gait-turn-round').addEventListener('click', () => this.gait && this.change(Robot.reversed(this.gait)));
   }
 
   /** Shows the session's robot if the panel is open; an edited gait stays. */

@@ -2,7 +2,7 @@
 import { Companion } from '../companion';
 import { wakeWith } from '../gaits/try';
 import { LONGEST, Recording } from '../recording';
-import type { Bars, Description, Four, Frame } from '../robot';
+import { type Bars, type Description, type Four, type Frame, Robot } from '../robot';
 import type { Session } from '../session';
 import { messageOf } from '../trouble';
 import { WORDS } from '../words';
@@ -55,7 +55,6 @@ export class Keep {
 
   /** Takes functions that send a line and that return the pace, percent. */
   constructor(
-    private readonly module: WebAssembly.Module,
     private readonly session: () => Session,
     private readonly floor: Floor,
     private readonly ask: (line: string) => Promise<unknown>,
@@ -154,9 +153,9 @@ export class Keep {
     }
     const panel = pair?.output.closest('details');
     if (!pair || !panel || !companion?.frame || this.isWaiting || !isShown(panel)) return;
-    const { last, robot } = this.session();
+    const { last } = this.session();
     const start = { x: 0, y: 0, heading: 0 };
-    const displacement = (frame: Frame | null) => (frame ? short(robot.between(start, frame.place)) : '');
+    const displacement = (frame: Frame | null) => (frame ? short(Robot.between(start, frame.place)) : '');
     this.say(`${pair.names[0]}: ${displacement(last)}. ${pair.names[1]}: ${displacement(companion.frame)}.`, pair.output);
   }
 
@@ -262,7 +261,7 @@ export class Keep {
     this.removeCompanion();
     this.say('Switching on the second robot…', pair.output);
     try {
-      const companion = await Companion.create(this.module, pair.toml, floor, servos, volts);
+      const companion = Companion.create(pair.toml, floor, servos, volts);
       if (toml !== this.session().toml) return;
       await this.ask(WORDS.stop);
       session.home();

@@ -1,5 +1,5 @@
 // The robot's lengths as numbers: a change makes a new robot or is refused.
-import type { Edits, Length } from '../robot';
+import { type Edits, type Length, Robot } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
 import { download } from './download';
@@ -51,7 +51,7 @@ export class Lengths {
     const value = input?.valueAsNumber;
     if (!input || value === undefined || !Number.isFinite(value)) return;
     const edits = withTwin(key, value, session.description.lengths, this.symmetric.checked);
-    const { text, refusal } = session.robot.lengths(session.toml, edits, false);
+    const { text, refusal } = Robot.lengths(session.toml, edits, false);
     if (!refusal) return void (await session.change(text));
     const { lengths } = session.description;
     const kept = lengths.filter((length) => edits.some(([each]) => each === length.key));
@@ -67,8 +67,8 @@ export class Lengths {
   }
 
   private download(): void {
-    const { robot, toml, floor } = this.session();
-    const refused = download(robot, toml, floor);
+    const { toml, floor } = this.session();
+    const refused = download(toml, floor);
     if (refused) this.say(`This robot.toml has not what Legs, feet and floor are set to: ${refused.refused}`);
   }
 

@@ -1,9 +1,13 @@
 // The room in which a camera measures the robot: what it sees, the protocol or a film of somebody, and the results.
-import { Film } from '../measure/film';
+import { transfer } from 'comlink';
+
+import type { AskedWalk } from '../../generated/measure';
+import { files } from '../files';
+import { Helper } from '../helper';
 import { FEWEST, Interrupted, Protocol, type Walk } from '../measure/protocol';
-import type { AskedWalk } from '../measure/question';
 import { Seen } from '../measure/seen';
 import { Source } from '../measure/source';
+import type { FilmFunctions } from '../measure/worker';
 import type { Description, Gait, GaitPrediction } from '../robot';
 import type { Session } from '../session';
 import { messageOf } from '../trouble';
@@ -28,6 +32,15 @@ const NUMBERS: Record<string, Range & { value: number | null }> = {
 
 /** `record` keeps the camera's pictures until the user is done, `drive` while the page drives, `play` those of a film file. */
 type Doing = 'nothing' | 'record' | 'drive' | 'play' | 'compute';
+
+type Film = Helper<FilmFunctions>;
+
+async function loadFilm(): Promise<Film> {
+  const module = await files.measure();
+  const film: Film = new Helper(new Worker(new URL('../measure/worker.ts', import.meta.url), { type: 'module' }));
+  await film.ask((functions) => functions.load(module));
+  return film;
+}
 
 export class MeasureView {
   private readonly room = element('room-measure');
@@ -138,7 +151,7 @@ export class MeasureView {
   }
 
   private loaded(): Promise<Film> {
-    this.film ??= Film.load();
+    this.film ??= loadFilm();
     this.film.catch(() => (this.film = null));
     return this.film;
   }
@@ -183,7 +196,7 @@ export class MeasureView {
     const film = await this.loaded();
     const isKept = this.doing === 'record' || this.doing === 'play' || (this.doing === 'drive' && !this.isPutBack);
     try {
-      this.seen.take(await film.look(picture, seconds, isKept));
+      this.seen.take(await film.ask((film) => film.look(transfer(picture, [picture]), seconds, isKept)));
       this.protocol?.look(this.seen.back);
       drawSight(this.view.querySelector('canvas') as HTMLCanvasElement, this.seen);
     } catch (error) {
@@ -194,7 +207,7 @@ export class MeasureView {
   private async play(file: File): Promise<void> {
     this.leave();
     const film = await this.loaded();
-    await film.clear();
+    await film.ask((film) => film.clear());
     this.seen = new Seen();
     this.doing = 'play';
     this.hasFilm = false;
@@ -223,7 +236,8 @@ export class MeasureView {
     if (this.hasFilm) return this.compute(this.whole);
     const isPage = this.driver.value === 'page';
     const gaits = isPage ? this.drivable() : [];
-    await (await this.loaded()).clear();
+    const film = await this.loaded();
+    await film.ask((film) => film.clear());
     this.seen.clear();
     if (isPage) return this.drive(gaits);
     this.doing = 'record';
@@ -298,7 +312,7 @@ export class MeasureView {
     const film = await this.loaded();
     const { height = null, ruler } = this.values;
     try {
-      const measured = await film.measure({ toml: this.session().toml, speed, height, ruler: ruler ?? 100, walks });
+      const measured = await film.ask((film) => film.measure({ toml: this.session().toml, speed, height, ruler: ruler ?? 100, walks }));
       this.measured.show(measured.gaits);
       troubles.push(...measured.troubles);
     } catch (error) {
@@ -311,7 +325,8 @@ export class MeasureView {
 
   private async saveSheet(): Promise<void> {
     const isLetter = element<HTMLSelectElement>('measure-paper').value === 'letter';
-    save('sheet.pdf', [await (await this.loaded()).sheet(isLetter)], 'application/pdf');
+    const film = await this.loaded();
+    save('sheet.pdf', [await film.ask((film) => film.sheet(isLetter))], 'application/pdf');
     this.say('sheet.pdf: print it at 100 % ("actual size"), then measure the line of 100 mm on it.');
   }
 

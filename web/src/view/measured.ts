@@ -1,6 +1,6 @@
 // The results of the room that measures: a table, and the same to keep, to share and to print.
 import { card, csv, heads, rangeOf, rows, titleOf } from '../measure/card';
-import type { Report } from '../measure/question';
+import type { Report } from '../../generated/measure';
 import { element } from './canvas';
 import { save } from './download';
 import { make, table } from './make';

@@ -1,8 +1,7 @@
 // The robot in 3D on the stage, and its panel: the parts, the guide step by step, and all files to print and to cut.
 // Nothing of it is loaded before 3D is shown or the panel is opened.
-import type { Meeting, Model } from '../parts/model';
 import type { Space } from '../parts/space';
-import type { Made, Progress, Solids } from '../parts/workshop';
+import type { Made, Meeting, Model, Progress, Solids } from '../parts/workshop';
 import type { Frame, Place } from '../robot';
 import type { Session } from '../session';
 import { messageOf } from '../trouble';
@@ -223,7 +222,9 @@ export class PartsView {
     let stopped = false;
     try {
       const workshop = await import('../parts/workshop');
-      const { made, stop } = workshop.make(toml, which === 'all' ? null : original, ({ doing, done, all }: Progress) => {
+      const { answer, stop } = workshop.make(toml, which === 'all' ? null : original, ({ doing, done, all }: Progress) => {
+        // Reports that were under way arrive after the end of the worker.
+        if (stopped) return;
         bar.max = all;
         bar.value = done;
         this.say('files-said', `${words[doing]}: ${done} of ${all}.`);
@@ -235,7 +236,7 @@ export class PartsView {
           end(null);
         };
       });
-      const files = await Promise.race([made, halted]);
+      const files = await Promise.race([answer, halted]);
       if (!files) return;
       if (files.paths.length > 0) save(`${file || 'robot'}-${which === 'all' ? 'parts' : 'changed-parts'}.zip`, [files.zip], 'application/zip');
       this.say('files-said', this.saved(files, which));

@@ -85,7 +85,7 @@ export class PathView {
 
   /** Shows the plane of the chosen end, with the chosen shape unless a drawn line is kept. */
   private begin(isKept = false): void {
-    this.room = this.session().robot.room(this.drawn.end);
+    this.room = this.session().robot.reachArea(this.drawn.end === 'head' ? 0 : 1);
     if (!this.room) return;
     this.drawBackground(this.room);
     const shape = SHAPES[this.shape.value];

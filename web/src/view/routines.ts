@@ -1,7 +1,7 @@
 // The panel of routines: a view of their steps in the text of robot.toml, and the recorder of a drive.
 import { LatestQuestion } from '../latest';
-import { type Place, type Refused, type RoundPath, type Routine } from '../robot';
-import type { Answer, Question } from '../routines/question';
+import { type OnFloor, type Place, type Refused, Robot, type RoundPath, type Routine } from '../robot';
+import { robotHelper } from '../robot-helper';
 import { Recorder } from '../routines/recorder';
 import type { Session } from '../session';
 import { element } from './canvas';
@@ -37,7 +37,7 @@ export class RoutinesView {
   private recorded: string[] = [];
   /** The step that is dragged, and its place if it is let go now. */
   private dragged: { from: number; to: number } | null = null;
-  private paths: LatestQuestion<Question, Answer> | null = null;
+  private paths: LatestQuestion<OnFloor & { routine: string }, RoundPath | null> | null = null;
 
   /** Takes functions that return the session and the pace in percent, and that send a line. */
   constructor(
@@ -85,7 +85,7 @@ export class RoutinesView {
   show(): void {
     if (!isShown(this.panel)) return;
     const { value } = this.choice;
-    this.routines = this.session().robot.routines(this.text.draft);
+    this.routines = Robot.routines(this.text.draft);
     this.choice.replaceChildren(...this.routines.map(({ name }) => new Option(name)));
     if (this.routines.some(({ name }) => name === value)) this.choice.value = value;
     this.choice.disabled = this.routines.length === 0;
@@ -99,9 +99,14 @@ export class RoutinesView {
     if (!isShown(this.panel)) return;
     const { shown } = this;
     if (!shown) return this.draw(null);
-    const { robot, floor, servos } = this.session();
-    this.paths ??= new LatestQuestion(new Worker(new URL('../routines/worker.ts', import.meta.url), { type: 'module' }), this.module, (path: Answer) => this.draw(path));
-    this.paths.ask({ toml: robot.putSteps(this.text.draft, shown).text, floor, servos, routine: shown.name });
+    const { floor, servos } = this.session();
+    this.paths ??= this.asked();
+    this.paths.ask({ toml: Robot.putSteps(this.text.draft, shown.name, shown.steps).text, floor, servos, routine: shown.name });
+  }
+
+  private asked(): NonNullable<typeof this.paths> {
+    const helper = robotHelper(this.module);
+    return new LatestQuestion((question) => helper.ask((robot) => robot.round(question)), (path) => this.draw(path));
   }
 
   private say(text: string): void {
@@ -138,7 +143,7 @@ export class RoutinesView {
     element('routine-recorded').hidden = steps.length === 0;
     this.say(steps.length === 0 ? '' : `Recorded: ${steps.join(', ')}`);
     if (steps.length === 0) return;
-    const taken = new Set(this.session().robot.routines(this.text.draft).map(({ name }) => name));
+    const taken = new Set(Robot.routines(this.text.draft).map(({ name }) => name));
     const names = ['patrol', ...Array.from(taken, (_, n) => `patrol-${n + 2}`)];
     this.name.value = names.find((name) => !taken.has(name)) ?? '';
     this.name.select();
@@ -147,9 +152,8 @@ export class RoutinesView {
   private async keep(): Promise<void> {
     const name = this.name.value.trim().replaceAll(' ', '-');
     const { draft } = this.text;
-    const { robot } = this.session();
-    if (robot.routines(draft).some((routine) => routine.name === name)) return this.say(`${name} is there already: give it another name.`);
-    const { text, refusal } = robot.putSteps(draft, { name, steps: this.recorded });
+    if (Robot.routines(draft).some((routine) => routine.name === name)) return this.say(`${name} is there already: give it another name.`);
+    const { text, refusal } = Robot.putSteps(draft, name, this.recorded);
     // A mistake in a step is shown at its block, and then the routine is there.
     if (refusal && refusal.key !== `routine.${name}.steps`) return this.say(refusal.refused);
     this.offer([]);
@@ -167,7 +171,7 @@ export class RoutinesView {
   /** Replaces the steps of the chosen routine. */
   private async change(steps: string[], name = this.choice.value): Promise<void> {
     this.say('');
-    await this.text.loadText(this.session().robot.putSteps(this.text.draft, { name, steps }).text);
+    await this.text.loadText(Robot.putSteps(this.text.draft, name, steps).text);
   }
 
   private async move(from: number, to: number): Promise<void> {

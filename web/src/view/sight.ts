@@ -1,5 +1,5 @@
 // The overlay on the camera's picture: tags, the robot's path, its heading.
-import type { Pixel } from '../measure/question';
+import type { Pixel } from '../../generated/measure';
 import type { Seen } from '../measure/seen';
 import { surface } from './canvas';
 import { palette } from './palette';

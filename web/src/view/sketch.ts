@@ -1,14 +1,18 @@
 // The drawing whose joints can be dragged, and a slider of one length: lengths follow, and invalid ones are refused during the drag.
 import { LatestQuestion } from '../latest';
 import type { Edits, Length, Scene, Point } from '../robot';
+import { robotHelper } from '../robot-helper';
+import type { RobotFunctions } from '../robot-worker';
 import type { Session } from '../session';
 import { bars, type Joint, joints } from '../sketch/joints';
-import type { Answer, Question } from '../sketch/question';
 import { element } from './canvas';
 import type { FitView } from './fit';
 import { LengthSlider } from './length-slider';
 import { isShown } from './rooms';
 import { refusalOf, showOffers, words } from './tried-lengths';
+
+type Question = Parameters<RobotFunctions['lengths']>[0];
+type Answer = ReturnType<RobotFunctions['lengths']>;
 
 const SVG = 'http://www.w3.org/2000/svg';
 /** Movement below which a press is not a drag, screen points. */
@@ -47,8 +51,13 @@ export class Sketch {
     this.toml = toml;
     this.dragged = null;
     this.slider.showRobot(description.lengths);
-    this.sketches ??= new LatestQuestion(new Worker(new URL('../sketch/worker.ts', import.meta.url), { type: 'module' }), this.module, (answer) => this.answered(answer));
+    this.sketches ??= this.start();
     this.askRobot();
+  }
+
+  private start(): NonNullable<typeof this.sketches> {
+    const helper = robotHelper(this.module);
+    return new LatestQuestion((question) => helper.ask((robot) => robot.lengths(question)), (answer) => this.answered(answer));
   }
 
   /** Asks for the robot as it is, and for the range of the slider's length. */

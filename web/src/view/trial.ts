@@ -1,8 +1,8 @@
 // The trial of an edited gait: its figures, the nearest valid values, and the buttons that use it.
-import type { Answer, Question } from '../gaits/question';
 import { takeGait, tryGait } from '../gaits/try';
 import { LatestQuestion } from '../latest';
-import { type Alternative, isRefused, type EditedGait, type NoTrial, type Trial } from '../robot';
+import { type Alternative, isRefused, type EditedGait, type NoTrial, type OnFloor, type Trial } from '../robot';
+import { robotHelper } from '../robot-helper';
 import type { Session } from '../session';
 import { element } from './canvas';
 import { button } from './make';
@@ -40,7 +40,7 @@ const OFFERS: Record<Alternative, (value: number) => string> = {
 };
 
 export class TrialView {
-  private trials: LatestQuestion<Question, Answer> | null = null;
+  private trials: LatestQuestion<OnFloor & { made: EditedGait }, Trial | NoTrial | null> | null = null;
   private trial: Trial | null = null;
 
   constructor(
@@ -60,8 +60,13 @@ export class TrialView {
     const { toml, floor, servos } = this.session();
     const made = this.maker.made();
     if (!made || toml === '') return;
-    this.trials ??= new LatestQuestion(new Worker(new URL('../gaits/worker.ts', import.meta.url), { type: 'module' }), this.module, ({ trial }: Answer) => this.answered(trial));
+    this.trials ??= this.start();
     this.trials.ask({ toml, floor, servos, made });
+  }
+
+  private start(): NonNullable<typeof this.trials> {
+    const helper = robotHelper(this.module);
+    return new LatestQuestion((question) => helper.ask<Trial | NoTrial | null>((robot) => robot.trial(question)), (trial) => this.answered(trial));
   }
 
   say(text: string): void {

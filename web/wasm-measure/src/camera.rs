@@ -4,9 +4,10 @@ use lizard_film::{Film, Picture, Setup, Tag, sheet};
 use lizard_measure::{Gaits, Report, WatchedFilm, height_of_board};
 use lizard_robot::Robot;
 use serde::{Deserialize, Serialize};
+use tsify::Tsify;
 
 /// A refusal: the reason as a sentence.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Tsify)]
 pub struct Refused {
     /// The reason.
     pub refused: String,
@@ -21,16 +22,17 @@ impl Refused {
 }
 
 /// A tag in a picture.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Tsify)]
 pub struct TagEntry {
     /// Its id on the sheet.
     pub id: usize,
     /// Its corners, px: top left, top right, bottom right, bottom left, as it is printed.
+    #[tsify(type = "[Pixel, Pixel, Pixel, Pixel]")]
     pub corners: [[f64; 2]; 4],
 }
 
 /// A question for the movement of gaits in the film.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize, Tsify)]
 pub struct Asked {
     /// The robot.toml.
     pub toml: String,
@@ -45,7 +47,7 @@ pub struct Asked {
 }
 
 /// A gait that the robot walked in the film.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize, Tsify)]
 pub struct AskedWalk {
     /// The gait's name.
     pub gait: String,
@@ -54,9 +56,10 @@ pub struct AskedWalk {
 }
 
 /// The movement of gaits.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Tsify)]
 pub struct Results {
     /// The gaits as `lizard measure --json` writes them; walks of the same gait count together.
+    #[tsify(type = "Report[]")]
     pub gaits: serde_json::Value,
     /// The reasons why walks cannot be measured, as sentences with their gaits.
     pub troubles: Vec<String>,

@@ -1,13 +1,14 @@
 //! The robot measured by the page's camera: the very film and report of `lizard measure`.
 //!
 //! A browser hands over pictures, one by one, with their times; it gets back the tags that each shows. Afterwards it asks for
-//! the report of the gaits that the robot walked meanwhile. [`Camera`] holds the film; `abi` is the interface to
+//! the report of the gaits that the robot walked meanwhile. [`Camera`] holds the film; [`PageCamera`] is its class for
 //! JavaScript. It is a WebAssembly module of its own, which the page loads only when needed.
 //!
 //! # When not to use it
 //! The interface is made for this page and changes with it. A program in Rust uses `lizard-film` and `lizard-measure`.
 
-mod abi;
 mod camera;
+mod javascript;
 
 pub use camera::{Asked, AskedWalk, Camera, Refused, Results, TagEntry};
+pub use javascript::PageCamera;

@@ -3,14 +3,16 @@
 //! A browser that shows the robot in space needs triangles once and then, for each picture, the
 //! place of every body. Bodies that move together share a mount, so a pose is one turn and one
 //! shift in the plane for each mount, whatever the number of parts. [`Model`] computes both, the
-//! files to print, cut and read, and the proof that no two parts meet; `abi` is its interface to
+//! files to print, cut and read, and the proof that no two parts meet; [`Parts`] is its class for
 //! JavaScript. It is a WebAssembly module of its own, which the page loads only when needed.
 #![deny(unsafe_code)]
 #![deny(missing_docs)]
 #![warn(clippy::missing_errors_doc)]
 
-mod abi;
+mod javascript;
 mod model;
 mod solids;
 
+pub use javascript::{PartFile, Parts};
 pub use model::{BodyEntry, Model, ModelEntry, PartEntry, Refused, StepEntry};
+pub use solids::Triangles;

@@ -8,13 +8,15 @@ use lizard_parts::{
 use lizard_robot::Robot;
 use lizard_robot::servo::FORWARD;
 use serde::Serialize;
+use tsify::Tsify;
 
 /// The reason why the parts of a robot cannot be made.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Refused {
     /// The reason, as a message.
     pub refused: String,
     /// The parts that meet, if that is the reason.
+    #[tsify(type = "Meeting | null")]
     pub meeting: Option<Meeting>,
 }
 
@@ -37,7 +39,7 @@ impl From<Unfit> for Refused {
 }
 
 /// A body of the robot.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct BodyEntry {
     /// The unique name.
     pub name: String,
@@ -60,7 +62,7 @@ pub struct BodyEntry {
 }
 
 /// A printed part.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct PartEntry {
     /// The name.
     pub name: String,
@@ -71,7 +73,7 @@ pub struct PartEntry {
 }
 
 /// A step of the guide.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct StepEntry {
     /// The headline.
     pub title: &'static str,
@@ -80,7 +82,7 @@ pub struct StepEntry {
 }
 
 /// The complete model except the triangles.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct ModelEntry {
     /// Every body of the robot.
     pub bodies: Vec<BodyEntry>,
@@ -269,7 +271,7 @@ impl Model {
 }
 
 /// The result of a successful proof.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Proved {
     /// Smallest distance of two parts that are not made to touch, mm.
     pub least: Option<f64>,

@@ -8,13 +8,14 @@ use lizard_core::memory::restart::Restart;
 use lizard_core::virtual_board::{Eeprom, Running};
 use lizard_robot::{CoreRobot, healthy_rail_mv};
 use serde::Serialize;
+use tsify::Tsify;
 
 /// Steps of the analogue converter, and the reference on the chip in V.
 const FULL_SCALE: f64 = 1024.0;
 const REFERENCE: f64 = 1.1;
 
 /// The output of a frame.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Tsify)]
 pub struct CoreFrame {
     /// Pulse widths, CPU cycles of 62.5 ns, A1 to A4; 0 for none.
     pub widths: [u16; 4],

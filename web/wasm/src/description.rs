@@ -9,12 +9,13 @@ use lizard_robot::servo::{LEGS, NAMES};
 use lizard_robot::{Plate, Robot, STILL_FRAMES, ServoType, healthy_rail_mv};
 use lizard_twin::ServoModel;
 use serde::Serialize;
+use tsify::Tsify;
 
 use crate::floor::Floor;
 use crate::scene::Spot;
 
 /// A gait of the robot.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct GaitEntry {
     /// Name of the gait in robot.toml.
     pub name: String,
@@ -29,7 +30,7 @@ pub struct GaitEntry {
 }
 
 /// A length of the robot that may be changed.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct LinkEntry {
     /// Key in robot.toml, such as `links.l1`.
     pub key: String,
@@ -44,7 +45,7 @@ pub struct LinkEntry {
 }
 
 /// The limit of a margin.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct MarginEntry {
     /// Name of the margin.
     pub name: &'static str,
@@ -53,7 +54,7 @@ pub struct MarginEntry {
 }
 
 /// A servo of the robot.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct ServoEntry {
     /// Name, A1 to A4.
     pub name: &'static str,
@@ -72,7 +73,7 @@ const OWN: &str = "own";
 const IDEAL: &str = "ideal";
 
 /// A model of the servos.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct ModelEntry {
     /// Name of the model.
     pub name: &'static str,
@@ -122,7 +123,7 @@ pub(crate) fn servo_model(robot: &Robot, name: &str) -> Option<ServoModel> {
 }
 
 /// The chassis seen from above, as [`Plate`]: mm, chassis frame.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct PlateEntry {
     /// Half the width and half the length, without the arms.
     pub half: Spot,
@@ -153,7 +154,7 @@ impl From<Plate> for PlateEntry {
 }
 
 /// The description of a robot.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Description {
     /// Hash of the section, as the banner has it.
     pub hash: String,
@@ -164,6 +165,7 @@ pub struct Description {
     /// Address of its section in flash, bytes.
     pub start: u16,
     /// The servos A1 to A4.
+    #[tsify(type = "Four<ServoEntry>")]
     pub servos: Vec<ServoEntry>,
     /// The gaits in the order of the file.
     pub gaits: Vec<GaitEntry>,

@@ -9,6 +9,7 @@ use std::f64::consts::TAU;
 use lizard_kinematics::{End, Vector};
 use lizard_robot::{Harmonic, Path, Robot};
 use serde::{Deserialize, Serialize};
+use tsify::Tsify;
 
 use crate::room::neutral;
 
@@ -22,11 +23,12 @@ const MIN_AMPLITUDE: f64 = 0.05;
 const MAX_TERMS: usize = 16;
 
 /// A gait along a line that was drawn.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Tsify)]
 pub struct DrawnGait {
     /// Name of the gait in robot.toml.
     pub name: String,
     /// End whose point follows the line: `head` or `tail`.
+    #[tsify(type = "'head' | 'tail'")]
     pub end: String,
     /// Time of a cycle, s.
     pub period: f64,

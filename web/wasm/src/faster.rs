@@ -9,11 +9,12 @@ use lizard_robot::Bars;
 use lizard_tune::{Comparison, Kind, NoTuning, ScoredParameters, Search, Tuning, trials};
 use lizard_twin::Twin;
 use serde::{Deserialize, Serialize};
+use tsify::Tsify;
 
 use crate::refused::Refused;
 
 /// The task of a search: the given gait and the number of rounds.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Tsify)]
 pub struct SearchTask {
     /// The given gait.
     pub bars: Bars,
@@ -26,7 +27,7 @@ pub struct SearchTask {
 }
 
 /// The extent of a search.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct SearchExtent {
     /// Number of gaits that it tries.
     pub all: usize,
@@ -35,7 +36,7 @@ pub struct SearchExtent {
 }
 
 /// The progress of a search.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Progress {
     /// Number of gaits that it has tried.
     pub done: usize,
@@ -44,11 +45,12 @@ pub struct Progress {
 }
 
 /// The result of a search.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Found {
     /// The gait that was found, with the name of the given one.
     pub bars: Bars,
     /// Both gaits on random robots that the search has not used.
+    #[tsify(type = "{ unit: string; rate: number; robots: number; faster: number }")]
     pub comparison: Comparison,
     /// True if it is faster than the given gait.
     pub better: bool,

@@ -2,9 +2,10 @@
 
 use lizard_robot::{Body, Drive, Ground, Kind, Robot, Stance};
 use serde::{Deserialize, Serialize};
+use tsify::Tsify;
 
 /// The kind of drive of the legs, by its name in robot.toml.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Tsify)]
 #[serde(rename_all = "lowercase")]
 pub enum Legs {
     /// A rigid strut.
@@ -32,7 +33,7 @@ impl Legs {
 }
 
 /// The floor, the mass and the drive of the legs. The rest of the ground is the robot's own.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Tsify)]
 pub struct Floor {
     /// Friction of a pad that slides forward, above 0.
     pub friction: f64,

@@ -6,6 +6,7 @@
 use lizard_robot::Robot;
 use lizard_robot::edit::{NoSuchKey, with_number, without_gait};
 use serde::Serialize;
+use tsify::Tsify;
 
 use crate::description::Description;
 use crate::refused::Refused;
@@ -17,7 +18,7 @@ const STEP: f64 = 0.5;
 type Wanted = [(String, f64)];
 
 /// The text of a robot.toml with other lengths, its refusal, and valid alternatives.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Lengths {
     /// The text with the lengths wanted.
     text: String,
@@ -30,7 +31,7 @@ pub struct Lengths {
 }
 
 /// The nearest lengths that are accepted.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct NearestLengths {
     /// The lengths by their keys.
     lengths: Vec<(String, f64)>,
@@ -39,7 +40,7 @@ pub struct NearestLengths {
 }
 
 /// A robot.toml that gives up a gait.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct WithoutGait {
     /// Name of the gait.
     gait: String,

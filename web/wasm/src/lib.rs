@@ -4,20 +4,19 @@
 //! The page gives the text of a robot.toml and then, fifty times a second, four pulse widths, as
 //! the pins of a UNO have them. It gets back the place of every joint, the margin to every
 //! singularity, the guard's refusal of this pose, and the place of the body on the floor. [`Page`]
-//! holds all of that; `abi` is the interface to JavaScript, and the one place with `unsafe`
-//! attributes.
+//! holds all of that; [`Robot`] is its class for JavaScript.
 //!
 //! # When not to use it
 //! The interface is made for this page and changes with it. A program in Rust uses `lizard-robot`
-//! and `lizard-twin` directly; another page can take the JSON of `abi` as an example.
+//! and `lizard-twin` directly; another page can take [`Robot`] as an example.
 
-mod abi;
 mod core_run;
 mod description;
 mod drawn;
 #[cfg(feature = "tune")]
 mod faster;
 mod floor;
+mod javascript;
 mod lengths;
 mod map;
 mod page;
@@ -37,6 +36,7 @@ pub use drawn::DrawnGait;
 #[cfg(feature = "tune")]
 pub use faster::{Faster, Found, Progress, SearchExtent, SearchTask};
 pub use floor::{Floor, Legs};
+pub use javascript::Robot;
 pub use lengths::{Lengths, NearestLengths, WithoutGait};
 pub use map::{Curve, Map, MapPoint};
 pub use page::{Edited, Frame, Page};

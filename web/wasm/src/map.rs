@@ -4,6 +4,7 @@
 use lizard_kinematics::{Check, End, Limits, Lizard, Pose, SingularPose, Singularity};
 use lizard_robot::Robot;
 use serde::Serialize;
+use tsify::Tsify;
 
 /// Degrees between two points of the map.
 const STEP: f64 = 1.5;
@@ -14,7 +15,7 @@ const TO: f64 = 180.0;
 const CURVE_STEP: f64 = 0.5;
 
 /// A point of the map: left and right crank, deg, in the end's own frame.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Tsify)]
 pub struct MapPoint(
     /// Angle of the left crank, deg.
     pub f64,
@@ -23,7 +24,7 @@ pub struct MapPoint(
 );
 
 /// The singular positions of one kind.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Curve {
     /// Name of the links that are in line.
     pub kind: &'static str,
@@ -32,7 +33,7 @@ pub struct Curve {
 }
 
 /// The map of singularities of an end.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Map {
     /// Name of the end: head or tail.
     pub end: String,

@@ -8,6 +8,7 @@ use lizard_robot::servo::FORWARD;
 use lizard_robot::{Bars, Place as Walked, Robot};
 use lizard_twin::{ServoModel, State, Twin};
 use serde::Serialize;
+use tsify::Tsify;
 
 use crate::core_run::{CoreFrame, CoreRun};
 use crate::description::{Description, servo_model};
@@ -28,7 +29,7 @@ use crate::trial::{EditedGait, NoTrial, Trial};
 const CYCLES_PER_US: f64 = 16.0;
 
 /// A frame of the robot on the floor.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Frame {
     /// The robot at the pose of its servos; `None` if a loop does not close.
     scene: Option<Scene>,
@@ -45,7 +46,7 @@ pub struct Frame {
 }
 
 /// The text of a robot.toml after a change, and its refusal.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Edited {
     /// The changed text.
     text: String,

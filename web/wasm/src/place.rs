@@ -2,9 +2,10 @@
 
 use lizard_robot::{Place as Walked, Travel};
 use serde::{Deserialize, Serialize};
+use tsify::Tsify;
 
 /// Position and heading of the chassis on the floor.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Tsify)]
 pub struct Place {
     /// Distance to the right of the start, mm.
     pub x: f64,

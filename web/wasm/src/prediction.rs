@@ -4,9 +4,10 @@
 use lizard_robot::{CheckedGait, Effort, Ground, Prediction, SpringCost, Travel};
 use lizard_twin::{ServoModel, Twin};
 use serde::Serialize;
+use tsify::Tsify;
 
 /// The movement of a cycle as the page reads it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Tsify)]
 pub struct Movement {
     /// Ahead, mm; `None` if it is undetermined.
     forward: Option<f64>,
@@ -53,7 +54,7 @@ impl Movement {
 const PACES: usize = 20;
 
 /// The prediction of a cycle of a gait.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Tsify)]
 pub struct GaitPrediction {
     /// Movement of the body.
     #[serde(flatten)]
@@ -64,6 +65,7 @@ pub struct GaitPrediction {
     /// nowhere.
     pub share: Option<f64>,
     /// Largest share of a servo's line at each step of the pace; none with ideal servos.
+    #[tsify(type = "number[] | null")]
     pub lines: Option<[f64; PACES]>,
 }
 

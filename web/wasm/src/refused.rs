@@ -3,9 +3,10 @@
 use lizard_robot::Error;
 use lizard_robot::edit::NoSuchKey;
 use serde::Serialize;
+use tsify::Tsify;
 
 /// A refusal: the message that the user sees, and its key.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Tsify)]
 pub struct Refused {
     /// The message for the user: what is wrong, and where.
     pub refused: String,

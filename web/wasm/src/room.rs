@@ -6,6 +6,7 @@
 use lizard_kinematics::{End, Vector, wrap};
 use lizard_robot::Robot;
 use serde::Serialize;
+use tsify::Tsify;
 
 /// Number of steps across twice the reach.
 const STEPS_ACROSS: i32 = 160;
@@ -16,7 +17,7 @@ const SAME_POINT_MM: f64 = 1e-6;
 
 /// The area that an end's point can reach: mm in the end's own frame, from the middle of its base,
 /// outward positive in y.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct ReachArea {
     /// The first point of the first row.
     pub from: [f64; 2],

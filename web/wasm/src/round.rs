@@ -4,6 +4,7 @@ use lizard_robot::servo::FORWARD;
 use lizard_robot::{FRAMES_PER_SECOND, Place as Walked, Robot};
 use lizard_twin::Twin;
 use serde::Serialize;
+use tsify::Tsify;
 
 use crate::place::Place;
 
@@ -15,7 +16,7 @@ const MAX_FRAMES: usize = 6_000;
 const FRAMES: usize = 5;
 
 /// The path of a round from standing.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct RoundPath {
     /// Places one after another; the last one is the end.
     pub places: Vec<Place>,

@@ -4,11 +4,12 @@ use lizard_kinematics::{Check, End, Limits, Pose, Side, Solution, Vector};
 use lizard_robot::{LegPlace, Robot};
 use lizard_twin::{Shape, Twin};
 use serde::Serialize;
+use tsify::Tsify;
 
 use crate::map::{self, MapPoint};
 
 /// A point, mm, chassis frame: x to the right, y forward.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Tsify)]
 pub struct Spot(
     /// Distance to the right, mm.
     pub f64,
@@ -23,7 +24,7 @@ impl From<Vector> for Spot {
 }
 
 /// A leg at a pose.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct LegScene {
     /// Pivots on the chassis, that of the driven crank first.
     pub pivots: [Spot; 2],
@@ -38,7 +39,7 @@ pub struct LegScene {
 }
 
 /// A slider between two arms.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct SliderScene {
     /// Shafts of the front and the rear servo.
     pub shafts: [Spot; 2],
@@ -51,7 +52,7 @@ pub struct SliderScene {
 }
 
 /// A margin at a pose.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Margin {
     /// Name, such as `type2_head`.
     pub name: &'static str,
@@ -60,7 +61,7 @@ pub struct Margin {
 }
 
 /// The robot at a pose.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Scene {
     /// Servo angles, deg, chassis frame, servo order.
     pub angles: [f64; 4],
@@ -71,8 +72,10 @@ pub struct Scene {
     /// Points of head and tail.
     pub points: [Spot; 2],
     /// The sliders, left and right.
+    #[tsify(type = "[SliderScene, SliderScene]")]
     pub sliders: Vec<SliderScene>,
     /// The legs in servo order.
+    #[tsify(type = "Four<LegScene>")]
     pub legs: Vec<LegScene>,
     /// All margins.
     pub margins: Vec<Margin>,

@@ -7,6 +7,7 @@ use lizard_robot::servo::NAMES;
 use lizard_robot::{Bars, Robot, edit};
 use lizard_twin::Twin;
 use serde::{Deserialize, Serialize};
+use tsify::Tsify;
 
 use crate::drawn::DrawnGait;
 use crate::prediction::GaitPrediction;
@@ -18,7 +19,7 @@ const MIN_SIZE: i64 = 5;
 const MAX_PERIOD: i64 = 1000;
 
 /// An edited gait.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Tsify)]
 #[serde(untagged)]
 pub enum EditedGait {
     /// A gait along a line that was drawn.
@@ -28,7 +29,7 @@ pub enum EditedGait {
 }
 
 /// The figures of a valid gait.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Trial {
     /// Movement of a cycle.
     #[serde(flatten)]
@@ -50,16 +51,17 @@ pub struct Trial {
 }
 
 /// A valid value in place of the wanted one.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Alternative {
     /// Name of the value: `amplitude`, `size` or `period`.
+    #[tsify(type = "'amplitude' | 'size' | 'period'")]
     pub what: &'static str,
     /// The value in deg, as a share, or in s.
     pub value: f64,
 }
 
 /// The refusal of a gait, with possible values.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct NoTrial {
     /// The refusal.
     #[serde(flatten)]

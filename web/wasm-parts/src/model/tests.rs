@@ -2,6 +2,7 @@ use lizard_kinematics::Vector;
 use lizard_twin::{ServoModel, Shape, Twin};
 
 use super::*;
+use crate::solids::Triangles;
 
 const PAPER: &str = include_str!("../../../../robots/paper.toml");
 
@@ -66,21 +67,9 @@ fn without_lag_every_mount_is_where_the_assembly_has_it() {
 }
 
 /// The corners of each solid.
-fn corners(bytes: &[u8]) -> Vec<Vec<[f32; 3]>> {
-    let mut words = bytes
-        .chunks(4)
-        .map(|word| [word[0], word[1], word[2], word[3]]);
-    let mut solids = Vec::new();
-    while let Some(count) = words.next() {
-        let triangles = u32::from_le_bytes(words.next().expect("a count"));
-        let mut one = || f32::from_le_bytes(words.next().expect("a corner"));
-        let corners = (0..u32::from_le_bytes(count)).map(|_| [one(), one(), one()]);
-        solids.push(corners.collect());
-        for _ in 0..3 * triangles {
-            words.next().expect("a triangle's corner");
-        }
-    }
-    solids
+fn corners(solids: &[Triangles]) -> Vec<Vec<[f32; 3]>> {
+    let corners = solids.iter().map(|solid| solid.corners.as_chunks().0);
+    corners.map(<[_]>::to_vec).collect()
 }
 
 #[test]

@@ -1,0 +1,117 @@
+//! The parts as JavaScript sees them: a class by wasm-bindgen. A refusal is thrown as a [`Refused`].
+
+use js_sys::{Function, JSON};
+use serde::Serialize;
+use wasm_bindgen::prelude::{JsValue, wasm_bindgen};
+
+use crate::model::{Model, Refused};
+use crate::solids::Triangles;
+
+#[wasm_bindgen(typescript_custom_section)]
+const TYPES: &str = "
+/** Two parts that meet. */
+export interface Meeting {
+  first: string;
+  second: string;
+  /** Their distance, mm; below 0 they overlap. */
+  mm: number;
+  /** Servo angles there, deg; null if it is so at every pose, or none is known. */
+  pose: number[] | null;
+}
+";
+
+fn js(answer: impl Serialize) -> JsValue {
+    let text = serde_json::to_string(&answer).unwrap_or_default();
+    JSON::parse(&text).unwrap_or(JsValue::NULL)
+}
+
+impl From<Refused> for JsValue {
+    fn from(refused: Refused) -> Self {
+        js(refused)
+    }
+}
+
+/// A file that `lizard parts` writes.
+#[derive(Clone, Debug)]
+#[wasm_bindgen(getter_with_clone)]
+pub struct PartFile {
+    /// Its path.
+    pub path: String,
+    /// Its bytes.
+    pub bytes: Vec<u8>,
+}
+
+/// The parts of a robot.
+#[wasm_bindgen]
+pub struct Parts(Model);
+
+#[wasm_bindgen]
+impl Parts {
+    /// Makes the parts of a robot.toml.
+    ///
+    /// # Errors
+    /// Fails for a wrong robot.toml, or a robot of which no parts can be made.
+    #[wasm_bindgen(constructor)]
+    pub fn new(toml: &str) -> Result<Self, Refused> {
+        Ok(Self(Model::read(toml)?))
+    }
+
+    /// The model without triangles.
+    #[must_use]
+    #[wasm_bindgen(unchecked_return_type = "ModelEntry")]
+    pub fn entry(&self) -> JsValue {
+        js(self.0.entry())
+    }
+
+    /// The triangles of the solids, in the order of `BodyEntry.solid`.
+    ///
+    /// # Errors
+    /// Fails for a part whose layers make no body.
+    pub fn solids(&self) -> Result<Vec<Triangles>, Refused> {
+        self.0.solids()
+    }
+
+    /// x, y, cosine and sine of every mount, at angles and lags in deg; undefined where a loop does not close.
+    #[must_use]
+    pub fn pose(
+        &self,
+        #[wasm_bindgen(unchecked_param_type = "number[]")] angles: &[f64],
+        #[wasm_bindgen(unchecked_param_type = "number[]")] lags: &[f64],
+    ) -> Option<Vec<f64>> {
+        let places = self
+            .0
+            .pose(angles.try_into().ok()?, lags.try_into().ok()?)?;
+        Some(places.into_flattened())
+    }
+
+    /// Proves that no two parts meet; returns the least distance, mm. Calls `progress` with the number of questions answered
+    /// and their total.
+    ///
+    /// # Errors
+    /// Returns the two parts that meet.
+    pub fn prove(
+        &self,
+        #[wasm_bindgen(unchecked_param_type = "(done: number, all: number) => void")]
+        progress: &Function,
+    ) -> Result<Option<f64>, Refused> {
+        let proved = self.0.prove(|done, all| {
+            // A page that does not want to know it any more has ended the worker.
+            let _ = progress.call2(&JsValue::NULL, &done.into(), &all.into());
+        })?;
+        Ok(proved.least)
+    }
+
+    /// Makes some of the files; `number` counts the calls that the model asks for.
+    ///
+    /// # Errors
+    /// Fails for a part whose layers make no body, or a screw that cannot be reached.
+    pub fn files(&self, number: usize) -> Result<Vec<PartFile>, Refused> {
+        let files = self.0.files(number)?.into_iter();
+        Ok(files
+            .map(|file| PartFile {
+                path: file.path,
+                bytes: file.bytes,
+            })
+            .collect())
+    }
+}
