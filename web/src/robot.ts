@@ -1,9 +1,9 @@
 // The robot in WebAssembly, which computes everything; no formula is repeated in TypeScript. Its types are those of wasm/src.
 import { type Description, type Floor, type GaitPrediction, initSync, type Refused, Robot } from '../generated/lizard';
 
-export { Robot };
+export { calibrationText, isSameCalibration, parseCalibration, readCalibration, reversedServo, Robot, scaledServo, Transfer } from '../generated/lizard';
 export type {
-  Bars, Description, DrawnGait, Edits, EditedGait, Floor, Four, Frame, GaitPrediction, NoTrial, Place, ReachArea, Refused, RoundPath, Routine, Scene, Trial,
+  Bars, Calibration, Description, DrawnGait, Edits, EditedGait, Floor, Four, Frame, GaitPrediction, NoTrial, Place, ReachArea, Refused, RoundPath, Routine, Scene, ServoSettings, Trial,
 } from '../generated/lizard';
 export type {
   Legs as Kind, Lengths as TriedLengths, Map as SingularityMap, ModelEntry as ServoModel, Movement as Displacement, PlateEntry as Plate, Spot as Point,

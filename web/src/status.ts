@@ -1,4 +1,4 @@
-// Reads the banner, the answer to `status`, `# t=` lines and `cal` lines.
+// Reads the banner, the answer to `status` and `# t=` lines.
 import type { Four } from './robot';
 
 /** The firmware's first line after a reset. */
@@ -68,24 +68,4 @@ export function status(line: string): Status | null {
 export function reportedPose(line: string): Four<number> | null {
   const match = /^# t=\d+ pose=(\S+)/.exec(line);
   return match ? four(match[1]) : null;
-}
-
-export interface ServoSettings {
-  trim: number;
-  limit: [number, number];
-  dir: '+' | '-';
-  scale: number;
-}
-
-/** Reads the four `# A1 trim ...` lines of `cal`. */
-export function calibration(lines: string[]): ServoSettings[] | null {
-  const pattern = /^# A([1-4]) trim (\S+) limit (\S+) (\S+) dir ([+-]) scale (\S+)/;
-  const found = lines.flatMap((line) => {
-    const match = pattern.exec(line);
-    if (!match) return [];
-    const [, , trim, smallest, largest, dir, scale] = match;
-    const limit: [number, number] = [Number(smallest), Number(largest)];
-    return [{ trim: Number(trim), limit, dir: dir as '+' | '-', scale: Number(scale) }];
-  });
-  return found.length === 4 ? found : null;
 }

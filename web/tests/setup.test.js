@@ -95,6 +95,15 @@ test('a new UNO becomes a calibrated robot that walks, and lizard calibrate rest
   await setup(opened).getByLabel('It turned by, degrees').press('Enter');
   // 10 us per degree, times 20, divided by 18.5.
   await waitForMessage(opened, /^The scale of A1 is 10\.81 µs per degree/);
+  // Another scale leaves the horn where it is: the trim has other degrees then.
+  await press(opened, 'A3 back right');
+  await pressAndWait(opened, 'Turn A3 by 20°', /^A3 was told to turn 20°/);
+  await setup(opened).getByLabel('It turned by, degrees').fill('18.5');
+  await setup(opened).getByLabel('It turned by, degrees').press('Enter');
+  await waitForMessage(opened, /^The scale of A3 is 10\.81 µs per degree/);
+  await until(opened, 'it stands', async () => (await text(opened, '#doing')) === 'stand');
+  await opened.clock.runFor(500);
+  assertNear(await pulses(opened), [1500, 1500, 1496, 1500], 0.6, 'neutral is where it was');
 
   await step(opened, 'Limits');
   await until(opened, 'it stands', async () => (await text(opened, '#doing')) === 'stand');
@@ -128,7 +137,7 @@ test('a new UNO becomes a calibrated robot that walks, and lizard calibrate rest
   assert.deepEqual(await readCalibration(opened), [
     '# A1 trim 0.00 limit 48.59 228.59 dir + scale 10.81',
     '# A2 trim 0.00 limit 311.41 131.41 dir - scale 10.00',
-    '# A3 trim -0.40 limit 228.59 48.59 dir + scale 10.00',
+    '# A3 trim -0.37 limit 228.59 48.59 dir + scale 10.81',
     '# A4 trim 0.00 limit 150.00 311.41 dir + scale 10.00',
   ]);
   const folder = await mkdtemp(join(tmpdir(), 'lizard-'));
@@ -317,10 +326,10 @@ test('a saved calibration file is sent to the robot, and an invalid one is refus
   assert.match((await readCalibration(opened))[2], /^# A3 trim 3\.25 /);
   const before = await readCalibration(opened);
   const wrong = [
-    ['<img src=x onerror="window.strange=1">.toml', 'hello', /^<img .*>\.toml: line 1: this is not TOML$/],
-    ['a.toml', 'format = "lizard calibration 2"', /^a\.toml: the key format = "lizard calibration 1" is missing/],
-    ['b.toml', KEPT.replace('2.25', '400'), /^b\.toml: servo\.A2\.trim: 400 is not a number/],
-    ['c.toml', KEPT.replace('"stand"', '"stand\\nsave"'), /^c\.toml: boot: .* is not the name of a gait$/],
+    ['<img src=x onerror="window.strange=1">.toml', 'hello', /^<img .*>\.toml:1: `hello` lacks the = /],
+    ['a.toml', 'format = "lizard calibration 2"', /^a\.toml:1: format must be "lizard calibration 1"/],
+    ['b.toml', KEPT.replace('2.25', '400'), /^b\.toml:\d+: servo\.A2\.trim is 400; it must be within -360 to 360 deg/],
+    ['c.toml', KEPT.replace('"stand"', '"stand\\nsave"'), /^c\.toml:\d+: boot is not the name of a gait$/],
     ['d.toml', KEPT.replace('scale = 10.0', 'scale = 99.0'), /^The robot refuses "scale 1 99\.00": scale must be 5\.\.20/],
   ];
   for (const [name, body, message] of wrong) {

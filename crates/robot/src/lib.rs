@@ -22,6 +22,7 @@
 //! neither needs a file. On a microcontroller take `lizard-core`: this crate needs `std` and
 //! floating point.
 
+mod calibration;
 mod checks;
 mod file;
 mod gaits;
@@ -35,6 +36,7 @@ mod tables;
 mod testing;
 mod units;
 
+pub use calibration::{Calibration, ServoSettings, Transfer};
 pub use checks::{Audit, CheckedGait, Effort, LeastMargin, Peak, TIGHT, TableError, Walked};
 pub use file::{Error, MAX_FILE_BYTES, edit, explain_mistake};
 pub use gaits::{Bars, Harmonic, Path, PathLeg, Routine, Stride, Waveform};

@@ -2,11 +2,10 @@
 // the wrong way. Nothing is stored before `save`; `restore` restores the old calibration.
 import type { Answer } from '../link/dialogue';
 import type { Link } from '../link/link';
-import type { Four } from '../robot';
+import { type Calibration, type Four, isSameCalibration, readCalibration, reversedServo, scaledServo, Transfer } from '../robot';
 import type { Session } from '../session';
 import { status } from '../status';
 import { GAITS, WORDS } from '../words';
-import { angle, type Calibration, calibrationOf, copyOf, isSame, linesOf } from './calibration';
 
 /** Turns to try for proving a servo's sign, deg, until the robot accepts one. */
 const SIGN_TURNS = [10, 5, -10, -5];
@@ -17,6 +16,11 @@ const MOTION_TIMEOUT = 5000;
 const POLL_INTERVAL = 60;
 /** Tolerance of a reached pose, deg. */
 const TOLERANCE = 0.02;
+
+/** Wraps an angle to 0 up to a turn, rounded to the console's hundredths, deg. */
+export function angle(degrees: number): number {
+  return (((Math.round(degrees * 100) % 36_000) + 36_000) % 36_000) / 100;
+}
 
 /** Thrown with the robot's reason for a refusal. */
 export class Refusal extends Error {}
@@ -39,14 +43,14 @@ export class Guide {
     calibration: Calibration,
   ) {
     this.before = calibration;
-    this.now = copyOf(calibration);
+    this.now = structuredClone(calibration);
     this.link = session.link;
     this.banners = session.banners;
   }
 
   /** Reads the robot's calibration; nothing moves. Throws an error for the user. */
   static async begin(session: Session): Promise<Guide> {
-    const calibration = calibrationOf((await sendLine(session, WORDS.cal)).notes);
+    const calibration = readCalibration((await sendLine(session, WORDS.cal)).notes);
     if (!calibration) throw new Error('The robot does not say its calibration as this page knows it: write this firmware first.');
     return new Guide(session, calibration);
   }
@@ -63,7 +67,7 @@ export class Guide {
 
   /** True if a setting is not saved. */
   get isChanged(): boolean {
-    return !isSame(this.before, this.now);
+    return !isSameCalibration(this.before, this.now);
   }
 
   /** Makes the robot stand; returns its neutral angles, deg. */
@@ -120,11 +124,8 @@ export class Guide {
   /** Reverses the sign of a servo. */
   async reverse(servo: number): Promise<void> {
     await this.stand();
-    const next = copyOf(this.now);
-    const set = next.servos[servo];
-    set.dir = set.dir === '+' ? '-' : '+';
-    // The horn stays where it is: the same pulse is now the opposite trim.
-    set.trim = 0 - set.trim;
+    const next = structuredClone(this.now);
+    const set = (next.servos[servo] = reversedServo(this.now.servos[servo]));
     await this.sendLine(`${WORDS.dir} ${servo + 1} ${set.dir}`);
     if (set.trim !== 0) await this.sendLine(`${WORDS.trim} ${servo + 1} ${set.trim.toFixed(2)}`);
     this.now = next;
@@ -133,7 +134,7 @@ export class Guide {
 
   /** Changes a servo's trim, deg counter-clockwise. */
   async trim(servo: number, by: number): Promise<void> {
-    const next = copyOf(this.now);
+    const next = structuredClone(this.now);
     const trim = Math.round((next.servos[servo].trim + by) * 100) / 100 + 0;
     next.servos[servo].trim = trim;
     await this.sendLine(`${WORDS.trim} ${servo + 1} ${trim.toFixed(2)}`);
@@ -143,17 +144,24 @@ export class Guide {
   /** Sets a servo's scale from its `measured` turn for a commanded one, deg; returns it, us per deg. */
   async scale(servo: number, asked: number, measured: number): Promise<number> {
     await this.stand();
-    const next = copyOf(this.now);
-    const scale = Math.round((next.servos[servo].scale * Math.abs(asked) * 100) / Math.abs(measured)) / 100;
-    next.servos[servo].scale = scale;
+    const next = structuredClone(this.now);
+    const old = this.now.servos[servo];
+    const { scale, trim } = (next.servos[servo] = scaledServo(old, (old.scale * Math.abs(asked)) / Math.abs(measured)));
     await this.sendLine(`${WORDS.scale} ${servo + 1} ${scale.toFixed(2)}`);
+    try {
+      // The horn stays where it is.
+      if (trim !== old.trim) await this.sendLine(`${WORDS.trim} ${servo + 1} ${trim.toFixed(2)}`);
+    } catch (error) {
+      if (error instanceof Refusal) await this.sendLine(`${WORDS.scale} ${servo + 1} ${old.scale.toFixed(2)}`);
+      throw error;
+    }
     this.now = next;
     return scale;
   }
 
   /** Sets a servo's travel, counter-clockwise from the first angle to the second, deg. */
   async limit(servo: number, from: number, to: number): Promise<void> {
-    const next = copyOf(this.now);
+    const next = structuredClone(this.now);
     const limit: [number, number] = [angle(from), angle(to)];
     next.servos[servo].limit = limit;
     await this.sendLine(`${WORDS.limit} ${servo + 1} ${limit[0].toFixed(2)} ${limit[1].toFixed(2)}`);
@@ -173,7 +181,7 @@ export class Guide {
 
   async save(): Promise<void> {
     await this.sendLine(WORDS.save);
-    this.before = copyOf(this.now);
+    this.before = structuredClone(this.now);
   }
 
   /** Restores the old calibration and makes the robot stand; returns true if anything had changed. */
@@ -191,11 +199,11 @@ export class Guide {
 
   /** Sets another calibration, unsaved; a refused one changes nothing. Throws the robot's reason. */
   async setCalibration(set: Calibration): Promise<void> {
-    const had = copyOf(this.now);
+    const had = structuredClone(this.now);
     try {
       await this.apply(set);
-      const read = calibrationOf((await this.sendLine(WORDS.cal)).notes);
-      if (!read || !isSame(read, set)) throw new Refusal('the robot did not accept all of it');
+      const read = readCalibration((await this.sendLine(WORDS.cal)).notes);
+      if (!read || !isSameCalibration(read, set)) throw new Refusal('the robot did not accept all of it');
     } catch (error) {
       if (error instanceof Refusal) await this.apply(had);
       throw error;
@@ -203,35 +211,20 @@ export class Guide {
     await settle(this.session);
   }
 
-  /**
-   * Each line must leave the gaits within the servos' travel. On the way from one calibration to another a line may
-   * break that although the result would not. So a refused line is tried again after the others, and once more from
-   * the values of robot.toml.
-   */
+  /** Sends the lines of a calibration. Throws the first refusal of those that remain. */
   private async apply(set: Calibration): Promise<void> {
-    let lines = linesOf(set);
-    for (let fromFactory = false; ; ) {
-      let refusal: Refusal | null = null;
-      const left: string[] = [];
-      for (const line of lines) {
-        try {
-          await this.sendLine(line);
-        } catch (error) {
-          if (!(error instanceof Refusal)) throw error;
-          refusal ??= error;
-          left.push(line);
-        }
-      }
-      if (!refusal) break;
-      if (left.length < lines.length) lines = left;
-      else if (fromFactory) throw refusal;
-      else {
-        fromFactory = true;
-        await this.sendLine(WORDS.factory);
-        lines = linesOf(set);
+    const transfer = new Transfer(set);
+    let refusal: Refusal | null = null;
+    for (let line = transfer.nextLine(); line !== undefined; line = transfer.nextLine()) {
+      try {
+        await this.sendLine(line);
+      } catch (error) {
+        if (!(error instanceof Refusal)) throw error;
+        if (transfer.refuse()) refusal = error;
       }
     }
-    this.now = copyOf(set);
+    if (!transfer.isDone && refusal) throw refusal;
+    this.now = structuredClone(set);
   }
 
   private sendLine(line: string): Promise<Answer> {

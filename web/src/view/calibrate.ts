@@ -1,7 +1,7 @@
 // The panel of the servos' calibration: read by `cal`, set while a slider moves, stored by `save`.
 import type { Session } from '../session';
 import { WORDS } from '../words';
-import { calibration, type ServoSettings } from '../status';
+import { readCalibration, type ServoSettings } from '../robot';
 import { element } from './canvas';
 import { make } from './make';
 import { isShown } from './rooms';
@@ -34,11 +34,11 @@ export class Calibrate {
   /** Reads the robot's settings and shows them. */
   async read(): Promise<void> {
     const answer = await this.session().ask(WORDS.cal, true);
-    const settings = answer && calibration(answer.notes);
+    const settings = answer && readCalibration(answer.notes);
     if (!settings) return;
     this.isUnsure = false;
     if (this.rows.length === 0) this.build();
-    settings.forEach((servo, n) => this.show(n, servo));
+    settings.servos.forEach((servo, n) => this.show(n, servo));
   }
 
   /** Reads the settings again if the shown ones may be wrong; call it when the robot answers again. */

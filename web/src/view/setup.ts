@@ -1,7 +1,7 @@
 // The dialog of the first connection: the current step and its view. Every step can be left and entered again.
 import type { Link } from '../link/link';
+import { parseCalibration } from '../robot';
 import type { Session } from '../session';
-import { calibrationIn } from '../setup/calibration-file';
 import { Guide } from '../setup/guide';
 import { messageOf } from '../trouble';
 import { GAITS, NOTHING_SAVED } from '../words';
@@ -198,9 +198,7 @@ export class Setup implements Tools {
 
   readonly setCalibration = (text: string, name: string): void => {
     this.act(async () => {
-      const set = await calibrationIn(text).catch((error: unknown) => {
-        throw new Error(`${name}: ${messageOf(error)}`);
-      });
+      const set = parseCalibration(text, name);
       const guide = await this.asked();
       await guide.setCalibration(set);
       return `The robot has the calibration of ${name}. It is not saved yet.`;

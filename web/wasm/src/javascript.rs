@@ -40,7 +40,7 @@ export interface Bars {
 ";
 
 /// Converts an answer; where it cannot be written as JSON, to `null`.
-fn js(answer: impl Serialize) -> JsValue {
+pub(crate) fn js(answer: impl Serialize) -> JsValue {
     let text = serde_json::to_string(&answer).unwrap_or_default();
     JSON::parse(&text).unwrap_or(JsValue::NULL)
 }
@@ -51,7 +51,7 @@ fn either(result: Result<impl Serialize, impl Serialize>) -> JsValue {
 }
 
 /// Converts an argument.
-fn rust<T: DeserializeOwned>(value: &JsValue) -> Result<T, JsError> {
+pub(crate) fn rust<T: DeserializeOwned>(value: &JsValue) -> Result<T, JsError> {
     let text = JSON::stringify(value).map_err(|_| JsError::new("this is no JSON"))?;
     Ok(serde_json::from_str(&String::from(text))?)
 }

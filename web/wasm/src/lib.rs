@@ -10,6 +10,7 @@
 //! The interface is made for this page and changes with it. A program in Rust uses `lizard-robot`
 //! and `lizard-twin` directly; another page can take [`Robot`] as an example.
 
+mod calibration;
 mod core_run;
 mod description;
 mod drawn;
@@ -30,6 +31,7 @@ mod round;
 mod scene;
 mod trial;
 
+pub use calibration::Transfer;
 pub use core_run::{CoreFrame, CoreRun};
 pub use description::{Description, GaitEntry, LinkEntry, MarginEntry, ModelEntry, ServoEntry};
 pub use drawn::DrawnGait;

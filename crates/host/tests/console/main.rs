@@ -277,11 +277,11 @@ fn wrong_input_is_a_message_and_starts_nothing() {
         ),
         (
             &["calibrate", "restore", "no.toml"],
-            "lizard: no.toml: line 1: this is not TOML: ",
+            "lizard: no.toml:1: this is not TOML: ",
         ),
         (
             &["calibrate", "restore", "other.toml"],
-            "lizard: other.toml: the key format = \"lizard calibration 1\" is missing",
+            "lizard: other.toml: format must be \"lizard calibration 1\": this is no calibration",
         ),
         (
             &["calibrate", "restore", "none.toml"],

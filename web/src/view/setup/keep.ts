@@ -1,5 +1,5 @@
 // The step Keep: saves the calibration in the board and as a file.
-import { fileOf } from '../../setup/calibration-file';
+import { calibrationText } from '../../robot';
 import { nameOf } from './drawing';
 import { save } from '../download';
 import { button, make, note, row, table, words } from '../make';
@@ -33,7 +33,7 @@ export const keep: Step = {
     return [
       table('Calibration of the robot', ['servo', 'sign', 'trim', 'limits', 'µs per °'], rows),
       words(guide.isChanged ? 'Not saved yet.' : isDone('Keep') ? 'The board has saved it.' : 'Nothing has changed since the board was connected.'),
-      row(button('Save in the board', store, guide.isChanged), button('Save as a file', () => save('calibration.toml', [fileOf(guide.calibration)], 'application/toml'))),
+      row(button('Save in the board', store, guide.isChanged), button('Save as a file', () => save('calibration.toml', [calibrationText(guide.calibration)], 'application/toml'))),
       row(make('label', { className: 'file' }, 'Open a saved file ', file)),
       note('The file is the same as that of `lizard calibrate backup`. A file that you open takes effect at once; the button saves it in the board.'),
     ];

@@ -1,5 +1,5 @@
 // The step Limits: a servo's travel before printed parts touch each other.
-import { angle } from '../../setup/calibration';
+import { angle } from '../../setup/guide';
 import { nameOf, type SelectedServo } from './drawing';
 import { button, note, number, row, words } from '../make';
 import type { Step, Tools } from './step';

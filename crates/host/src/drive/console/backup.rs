@@ -3,9 +3,10 @@
 use std::io::{Read, Write};
 use std::path::PathBuf;
 
-use super::calibration::Calibration;
+use lizard_robot::Calibration;
+
+use super::calibration;
 use super::connect::Connect;
-use super::file;
 use super::link::{Link, LinkError};
 use crate::Failure;
 use crate::shared::files;
@@ -41,8 +42,8 @@ pub struct RestoreArgs {
 pub fn backup(args: BackupArgs) -> Result<(), Failure> {
     let finder = args.connect.finder("calibrate backup FILE")?;
     let (mut board, _) = finder.open_and_greet()?;
-    let calibration = Calibration::ask(&mut board.link).map_err(|error| board.failure(&error))?;
-    files::write(&args.file, file::text(&calibration).as_bytes())?;
+    let calibration = calibration::ask(&mut board.link).map_err(|error| board.failure(&error))?;
+    files::write(&args.file, calibration.text().as_bytes())?;
     println!(
         "the calibration of {} is in {}",
         board.name,
@@ -56,7 +57,9 @@ pub fn backup(args: BackupArgs) -> Result<(), Failure> {
 /// # Errors
 /// Fails for a wrong file, without a board, or if the robot refuses.
 pub fn restore(args: RestoreArgs) -> Result<(), Failure> {
-    let calibration = file::read(&args.file)?;
+    let text = files::read_text(&args.file)?;
+    let calibration = Calibration::parse(&text, &args.file.display().to_string())
+        .map_err(|error| Failure::Input(error.to_string()))?;
     let finder = args.connect.finder("calibrate restore FILE")?;
     let (mut board, _) = finder.open_and_greet()?;
     send_calibration(&calibration, &mut board.link)
@@ -92,10 +95,9 @@ pub fn send_calibration<P: Read + Write>(
     calibration: &Calibration,
     link: &mut Link<P>,
 ) -> Result<(), SendError> {
-    let calibration_before = Calibration::ask(link).map_err(SendError::Refused)?;
-    let given = calibration
-        .apply(link)
-        .and_then(|()| Calibration::ask(link))
+    let calibration_before = calibration::ask(link).map_err(SendError::Refused)?;
+    let given = calibration::apply(calibration, link)
+        .and_then(|()| calibration::ask(link))
         .map(|now| now.is_same(calibration));
     let error = match given {
         Ok(true) => match link.command("save") {
@@ -105,7 +107,7 @@ pub fn send_calibration<P: Read + Write>(
         Ok(false) => SendError::Differs,
         Err(error) => SendError::Refused(error),
     };
-    calibration_before.apply(link).map_err(SendError::Between)?;
+    calibration::apply(&calibration_before, link).map_err(SendError::Between)?;
     Err(error)
 }
 
@@ -119,14 +121,14 @@ mod tests {
         let mut link = robot();
         link.command("trim 3 -4.25").expect("it is accepted");
         link.command("boot walk").expect("it is accepted");
-        let saved = Calibration::ask(&mut link).expect("it answers");
-        let saved = file::parse(&file::text(&saved)).expect("it is a calibration");
+        let saved = calibration::ask(&mut link).expect("it answers");
+        let saved = Calibration::parse(&saved.text(), "a.toml").expect("it is a calibration");
         link.command("factory").expect("it is accepted");
         send_calibration(&saved, &mut link).expect("it is taken and saved");
         link.command("factory").expect("it is accepted");
         link.command("load").expect("something was saved");
         assert!(
-            Calibration::ask(&mut link)
+            calibration::ask(&mut link)
                 .expect("it answers")
                 .is_same(&saved)
         );
@@ -136,10 +138,10 @@ mod tests {
     fn a_refused_calibration_leaves_what_was_there_also_unsaved() {
         let mut link = robot();
         link.command("trim 3 -4.25").expect("it is accepted");
-        let before = Calibration::ask(&mut link).expect("it answers");
+        let before = calibration::ask(&mut link).expect("it answers");
         let mut calibration = before.clone();
-        calibration.servo.at(0).trim = 5.0;
-        calibration.servo.at(2).scale = 99.0;
+        calibration.servos[0].trim = 5.0;
+        calibration.servos[2].scale = 99.0;
         let error = send_calibration(&calibration, &mut link).expect_err("it is refused");
         assert_eq!(
             error.to_string(),
@@ -147,7 +149,7 @@ mod tests {
              robot keeps its old settings"
         );
         assert!(
-            Calibration::ask(&mut link)
+            calibration::ask(&mut link)
                 .expect("it answers")
                 .is_same(&before)
         );

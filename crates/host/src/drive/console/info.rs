@@ -1,12 +1,15 @@
 //! `lizard info`: the firmware, robot, calibration and fault of a board.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::io::{Read, Write};
 use std::time::Duration;
 
+use lizard_robot::servo::NAMES;
+use lizard_robot::{Calibration, ServoSettings};
 use serde::Serialize;
 
-use super::calibration::Calibration;
+use super::calibration;
 use super::connect::Connect;
 use super::link::{Link, LinkError};
 use super::status::Status;
@@ -39,7 +42,25 @@ struct Board {
     vcc: Option<f64>,
     rail: Option<f64>,
     /// Null on a board without a robot.
-    calibration: Option<Calibration>,
+    calibration: Option<Settings>,
+}
+
+/// A calibration under the names of its file.
+#[derive(Debug, Serialize)]
+struct Settings {
+    boot: String,
+    deadman: u16,
+    servo: BTreeMap<&'static str, ServoSettings>,
+}
+
+impl From<Calibration> for Settings {
+    fn from(calibration: Calibration) -> Self {
+        Self {
+            boot: calibration.boot,
+            deadman: calibration.deadman,
+            servo: NAMES.into_iter().zip(calibration.servos).collect(),
+        }
+    }
 }
 
 /// A robot as its board names it.
@@ -77,8 +98,8 @@ impl Board {
         link: &mut Link<P>,
     ) -> Result<Self, LinkError> {
         let status = settled(link)?;
-        let calibration = match Calibration::ask(link) {
-            Ok(calibration) => Some(calibration),
+        let calibration = match calibration::ask(link) {
+            Ok(calibration) => Some(calibration.into()),
             Err(LinkError::Refused { .. }) => None,
             Err(error) => return Err(error),
         };
@@ -130,14 +151,9 @@ impl Board {
         if let Some(calibration) = &self.calibration {
             row("boot", calibration.boot.clone());
             row("deadman", format!("{} ms", calibration.deadman));
-            for (servo, name) in calibration
-                .servo
-                .all()
-                .into_iter()
-                .zip(["A1", "A2", "A3", "A4"])
-            {
+            for (name, servo) in &calibration.servo {
                 let [from, to] = servo.limit;
-                let sign = servo.dir.sign();
+                let sign = servo.dir;
                 row(
                     name,
                     format!(
@@ -196,7 +212,7 @@ mod tests {
     fn a_board_says_what_it_has_and_keeps_all_of_it() {
         let mut link = robot();
         link.command("trim 3 -4.25").expect("it is accepted");
-        let before = Calibration::ask(&mut link).expect("it answers");
+        let before = calibration::ask(&mut link).expect("it answers");
         let paper = lizard_robot::Robot::parse(PAPER).expect("it is right");
         let hash = format!("{:08x}", paper.firmware().hash());
         let banner = format!("# lizard 1.2.3 robot paper {hash}, send help for the commands");
@@ -212,7 +228,7 @@ mod tests {
         ] {
             assert!(text.contains(&line), "{line:?} in {text}");
         }
-        let after = Calibration::ask(&mut link).expect("it answers");
+        let after = calibration::ask(&mut link).expect("it answers");
         assert!(after.is_same(&before), "nothing was changed");
     }
 

@@ -11,7 +11,6 @@ pub mod connect;
 mod deadman;
 #[cfg(test)]
 pub mod double;
-pub mod file;
 pub mod find;
 mod history;
 pub mod info;

@@ -6,9 +6,9 @@
 use std::io::{Read, Write};
 use std::time::Duration;
 
-use lizard_robot::STILL_FRAMES;
+use lizard_robot::{Calibration, STILL_FRAMES, ServoSettings};
 
-use super::super::calibration::Calibration;
+use super::super::calibration;
 use super::super::link::{BANNER, Link, LinkError};
 use super::super::status::Status;
 use crate::drive::clock::Deadline;
@@ -70,7 +70,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     /// # Errors
     /// Fails if there is no answer, or the robot cannot stand.
     pub fn new(link: &'a mut Link<P>) -> Result<Self, LinkError> {
-        let before = Calibration::ask(link)?;
+        let before = calibration::ask(link)?;
         link.command("stand")?;
         let pose = settle(link)?;
         Ok(Self {
@@ -168,7 +168,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             Err(error) => return Err(error),
         }
         if self.now != self.before {
-            self.before.apply(self.link)?;
+            calibration::apply(&self.before, self.link)?;
         }
         Ok(())
     }
@@ -243,16 +243,15 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             return Ok(());
         };
         let mut next = self.now.clone();
-        let servo_settings = next.servo.at(servo);
-        let (old_scale, old_trim) = (servo_settings.scale, servo_settings.trim);
-        servo_settings.scale = hundredths(old_scale * (1.0 + degrees / ordered));
-        servo_settings.trim = hundredths(old_trim * old_scale / servo_settings.scale);
-        let (n, scale, trim) = (servo + 1, servo_settings.scale, servo_settings.trim);
+        let old = self.now.servos[servo];
+        let new = old.with_scale(old.scale * (1.0 + degrees / ordered));
+        next.servos[servo] = new;
+        let (n, scale, trim) = (servo + 1, new.scale, new.trim);
         self.link.command(&format!("scale {n} {scale:.2}"))?;
-        if trim != old_trim
+        if trim != old.trim
             && let Err(error) = self.link.command(&format!("trim {n} {trim:.2}"))
         {
-            self.link.command(&format!("scale {n} {old_scale:.2}"))?;
+            self.link.command(&format!("scale {n} {:.2}", old.scale))?;
             return Err(error);
         }
         self.now = next;
@@ -263,7 +262,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     /// far, its second with those that turn little.
     fn limit(&mut self, servo: usize, degrees: f64) -> Result<(), LinkError> {
         let mut next = self.now.clone();
-        let servo_settings = next.servo.at(servo);
+        let servo_settings = &mut next.servos[servo];
         let end = &mut servo_settings.limit[usize::from(degrees.abs() < 0.3)];
         *end = hundredths((*end + degrees.signum()).rem_euclid(360.0));
         let [min, max] = servo_settings.limit;
@@ -284,11 +283,8 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         self.stand()?;
         let n = servo + 1;
         let mut next = self.now.clone();
-        let servo_settings = next.servo.at(servo);
-        servo_settings.dir = servo_settings.dir.reversed();
-        // The horn stays where it is: the same pulse is now the opposite trim.
-        servo_settings.trim = -servo_settings.trim;
-        let (dir, trim) = (servo_settings.dir.sign(), servo_settings.trim);
+        next.servos[servo] = next.servos[servo].reversed();
+        let ServoSettings { dir, trim, .. } = next.servos[servo];
         self.link.command(&format!("dir {n} {dir}"))?;
         if trim != 0.0 {
             self.link.command(&format!("trim {n} {trim:.2}"))?;
@@ -302,7 +298,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
 
     fn trim(&mut self, servo: usize, degrees: f64) -> Result<(), LinkError> {
         let mut next = self.now.clone();
-        let servo_settings = next.servo.at(servo);
+        let servo_settings = &mut next.servos[servo];
         servo_settings.trim = hundredths(servo_settings.trim + degrees);
         let line = format!("trim {} {:.2}", servo + 1, servo_settings.trim);
         self.link.command(&line)?;

@@ -1,5 +1,5 @@
 use super::*;
-use crate::drive::console::calibration::Direction;
+use crate::drive::console::calibration;
 use crate::drive::console::double::{PAPER, robot};
 use lizard_core::virtual_board::Running;
 
@@ -16,11 +16,7 @@ const PROVE: [Key; 2] = [Key::Act, Key::Yes];
 #[test]
 fn a_whole_calibration_turns_a_sign_trims_a_servo_walks_and_saves() {
     let mut link = robot();
-    let [min, max] = Calibration::ask(&mut link)
-        .expect("it answers")
-        .servo
-        .a1
-        .limit;
+    let [min, max] = calibration::ask(&mut link).expect("it answers").servos[0].limit;
     let mut guide = Guide::new(&mut link).expect("it answers");
     press(&mut guide, &[Key::Next, Key::Next]);
     press(&mut guide, &PROVE);
@@ -65,15 +61,15 @@ fn a_whole_calibration_turns_a_sign_trims_a_servo_walks_and_saves() {
     assert!(guide.is_saved(), "{:?}", guide.view());
     press(&mut guide, &[Key::Back]);
     assert!(press(&mut guide, &[Key::Leave]), "what is saved stays");
-    let left = Calibration::ask(&mut link).expect("it answers");
-    assert_eq!(left.servo.a1.trim, 0.9);
+    let left = calibration::ask(&mut link).expect("it answers");
+    assert_eq!(left.servos[0].trim, 0.9);
     link.command("factory").expect("it is accepted");
     link.command("load").expect("it was saved");
-    let kept = Calibration::ask(&mut link).expect("it answers");
-    assert_eq!(kept.servo.a1.trim, 0.9);
-    assert_eq!(kept.servo.a2.trim, -0.5);
-    assert_eq!(kept.servo.a2.dir, Direction::Minus);
-    assert_eq!(kept.servo.a3.dir, Direction::Plus);
+    let kept = calibration::ask(&mut link).expect("it answers");
+    assert_eq!(kept.servos[0].trim, 0.9);
+    assert_eq!(kept.servos[1].trim, -0.5);
+    assert_eq!(kept.servos[1].dir, '-');
+    assert_eq!(kept.servos[2].dir, '+');
 }
 
 #[test]
@@ -96,11 +92,11 @@ fn cancelling_at_any_step_restores_everything() {
         let mut link = robot();
         link.command("trim 1 2.50").expect("it is accepted");
         link.command("boot walk").expect("it is accepted");
-        let before = Calibration::ask(&mut link).expect("it answers");
+        let before = calibration::ask(&mut link).expect("it answers");
         let mut guide = Guide::new(&mut link).expect("it answers");
         press(&mut guide, &keys[..length]);
         assert!(press(&mut guide, &[Key::Leave]), "after {length} keys");
-        let after = Calibration::ask(&mut link).expect("it answers");
+        let after = calibration::ask(&mut link).expect("it answers");
         assert_eq!(after, before, "after {length} keys");
         let status = link.ask("status").expect("it answers").answer;
         assert!(status.starts_with("ok gait=stand"), "{status}");
@@ -115,12 +111,9 @@ fn the_horn_keeps_its_pulse_when_a_sign_is_turned_round() {
     link.command("trim 1 3").expect("it is accepted");
     let mut guide = Guide::new(&mut link).expect("it answers");
     press(&mut guide, &[Key::Next, Key::Next, Key::Act, Key::No]);
-    assert_eq!(guide.now.servo.a1.trim, -3.0);
-    let now = Calibration::ask(&mut link).expect("it answers");
-    assert_eq!(
-        (now.servo.a1.trim, now.servo.a1.dir),
-        (-3.0, Direction::Minus)
-    );
+    assert_eq!(guide.now.servos[0].trim, -3.0);
+    let now = calibration::ask(&mut link).expect("it answers");
+    assert_eq!((now.servos[0].trim, now.servos[0].dir), (-3.0, '-'));
 }
 
 #[test]
@@ -220,7 +213,7 @@ fn a_scale_is_set_where_the_crank_points_and_its_middle_stays() {
     // Four corrections by half a degree of a turn of `by` degrees.
     press(&mut guide, &[Key::Turn(0.5); 4]);
     let expected = 10.0 * (1.0 + 0.5 / by).powi(4);
-    let now = Calibration::ask(&mut link).expect("it answers").servo.a1;
+    let now = calibration::ask(&mut link).expect("it answers").servos[0];
     assert!((now.scale - expected).abs() < 0.03, "{now:?}");
     // The pulse of the middle is as before: trim times scale.
     assert!((now.trim * now.scale - 20.0).abs() < 0.2, "{now:?}");
@@ -229,7 +222,7 @@ fn a_scale_is_set_where_the_crank_points_and_its_middle_stays() {
 #[test]
 fn each_end_of_the_travel_is_moved_and_not_into_what_the_gaits_need() {
     let mut link = robot();
-    let before = Calibration::ask(&mut link).expect("it answers").servo.a1;
+    let before = calibration::ask(&mut link).expect("it answers").servos[0];
     let mut guide = Guide::new(&mut link).expect("it answers");
     press(&mut guide, &to_scales());
     press(&mut guide, &[Key::Next; 4]);
@@ -237,12 +230,12 @@ fn each_end_of_the_travel_is_moved_and_not_into_what_the_gaits_need() {
     assert!(title.contains("how far may A1, front left turn"), "{title}");
     press(&mut guide, &[Key::Turn(0.5); 3]);
     press(&mut guide, &[Key::Turn(-0.1); 2]);
-    let now = guide.now.servo.a1.clone();
+    let now = guide.now.servos[0];
     assert_eq!(now.limit, [before.limit[0] + 3.0, before.limit[1] - 2.0]);
     press(&mut guide, &[Key::Turn(-0.1); 90]);
     let view = guide.view();
     assert!(view.message.contains("refuses `limit 1"), "{view:?}");
-    let now = Calibration::ask(&mut link).expect("it answers").servo.a1;
+    let now = calibration::ask(&mut link).expect("it answers").servos[0];
     let shown = format!("    limits {:.2} to {:.2} deg", now.limit[0], now.limit[1]);
     assert!(view.text.contains(&shown), "{view:?}, {now:?}");
 }

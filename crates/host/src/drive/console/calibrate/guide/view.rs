@@ -75,7 +75,7 @@ impl<P: Read + Write> Guide<'_, P> {
                      trim {:+.2} deg",
                     index + 1,
                     self.neutral[index],
-                    self.now.servo.all()[index].trim
+                    self.now.servos[index].trim
                 );
                 (
                     format!("straighten {}", servo(index)),
@@ -101,7 +101,7 @@ impl<P: Read + Write> Guide<'_, P> {
                     index + 1,
                     ordered.abs(),
                     (self.neutral[index] + ordered).rem_euclid(360.0),
-                    self.now.servo.all()[index].scale
+                    self.now.servos[index].scale
                 );
                 (
                     format!("how far does {} turn?", servo(index)),
@@ -110,7 +110,7 @@ impl<P: Read + Write> Guide<'_, P> {
                 )
             }
             Step::Limit(index) => {
-                let [min, max] = self.now.servo.all()[index].limit;
+                let [min, max] = self.now.servos[index].limit;
                 let text = format!(
                     "The crank of A{} never turns beyond its limits. Where a part would\n\
                      touch another, end its travel before that angle. Left and right move the\n\
@@ -137,12 +137,12 @@ impl<P: Read + Write> Guide<'_, P> {
             }
             Step::Save => {
                 let mut text = "This will be kept in the board:\n\n".to_owned();
-                for (index, set) in self.now.servo.all().into_iter().enumerate() {
+                for (index, set) in self.now.servos.iter().enumerate() {
                     let [min, max] = set.limit;
                     text += &format!(
                         "    {:<15} sign {}  trim {:+.2}  limits {min:.2} to {max:.2}  scale {:.2}\n",
                         servo(index),
-                        set.dir.sign(),
+                        set.dir,
                         set.trim,
                         set.scale
                     );

@@ -1,0 +1,329 @@
+//! The calibration of one robot's servos: what `save` stores, as the console prints and takes it, and as a file.
+//!
+//! Two robots of one robot.toml differ in the teeth on which the horns sit and in the servos themselves. The program and the
+//! page measure that and keep it; the rules of both are here.
+
+use std::collections::VecDeque;
+
+use lizard_core::console::command::MAX_DEADMAN_MS;
+use toml::de::DeTable;
+
+use crate::file::{Checked, Error, Fault, Section, parse};
+use crate::measures::servo::NAMES;
+
+/// The value of the key `format`. The number rises when a key changes its meaning.
+const FORMAT: &str = "lizard calibration 1";
+const HEAD: &str = "\
+# A lizard's calibration. `lizard calibrate restore` gives it back to the robot.
+# Angles in degrees; trim and limit as the console has them, scale in us per degree.
+
+";
+/// Half of the last digit that the console prints, and a little less.
+const NEAR: f64 = 0.0049;
+
+/// The settings of a robot.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Calibration {
+    /// The action after power-on: a gait, or rest.
+    pub boot: String,
+    /// Time without a line after which a gait ends, ms; 0 for never.
+    pub deadman: u16,
+    /// The servos A1 to A4.
+    pub servos: [ServoSettings; 4],
+}
+
+/// The settings of one servo.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct ServoSettings {
+    /// The counter-clockwise turn that the horn needs, deg.
+    pub trim: f64,
+    /// Ends of the travel, deg, chassis frame.
+    pub limit: [f64; 2],
+    /// The direction in which a longer pulse turns the servo: `+` for counter-clockwise, or `-`.
+    pub dir: char,
+    /// Pulse for a degree, us.
+    pub scale: f64,
+}
+
+impl ServoSettings {
+    /// The settings of a servo that turns the other way. The horn stays where it is: the same pulse is the opposite trim.
+    #[must_use]
+    pub fn reversed(self) -> Self {
+        Self {
+            dir: if self.dir == '+' { '-' } else { '+' },
+            trim: 0.0 - self.trim,
+            ..self
+        }
+    }
+
+    /// The settings with another scale, us/deg. The horn stays where it is: the trim is converted to the new degrees.
+    #[must_use]
+    pub fn with_scale(self, scale: f64) -> Self {
+        let scale = hundredths(scale);
+        Self {
+            trim: hundredths(self.trim * self.scale / scale),
+            scale,
+            ..self
+        }
+    }
+
+    /// Reads a line of `cal`, such as `# A1 trim 0 limit 48.59 228.59 dir + scale 10`, from the servo's name on.
+    fn parse(line: &str) -> Option<Self> {
+        let words: Vec<&str> = line.split(' ').collect();
+        let [
+            "trim",
+            trim,
+            "limit",
+            min,
+            max,
+            "dir",
+            dir @ ("+" | "-"),
+            "scale",
+            scale,
+            ..,
+        ] = words[..]
+        else {
+            return None;
+        };
+        Some(Self {
+            trim: trim.parse().ok()?,
+            limit: [min.parse().ok()?, max.parse().ok()?],
+            dir: dir.chars().next()?,
+            scale: scale.parse().ok()?,
+        })
+    }
+
+    fn read(section: &Section) -> Checked<Self> {
+        let number = |key| {
+            let value = section.number(key, -360.0, 360.0, "deg")?;
+            has_two_decimals(section, key, value)
+        };
+        let limit: [f64; 2] = section.numbers("limit", -360.0, 360.0, "deg")?;
+        for end in limit {
+            has_two_decimals(section, "limit", end)?;
+        }
+        let dir = match section.text("dir")? {
+            "+" => '+',
+            "-" => '-',
+            other => {
+                let problem = format!("is \"{other}\"; it must be \"+\" or \"-\"");
+                return Err(section.fault("dir", problem));
+            }
+        };
+        Ok(Self {
+            trim: number("trim")?,
+            limit,
+            dir,
+            scale: number("scale")?,
+        })
+    }
+}
+
+impl Calibration {
+    /// Reads the lines of `cal`; other `#` lines among them are skipped. `None` if one is missing.
+    #[must_use]
+    pub fn of_lines(lines: &[String]) -> Option<Self> {
+        let after = |word: &str| {
+            let mut found = lines.iter().filter_map(|line| {
+                let rest = line.strip_prefix("# ")?.strip_prefix(word)?;
+                rest.strip_prefix(' ')
+            });
+            found.next()
+        };
+        let servos: Option<Vec<_>> = NAMES
+            .iter()
+            .map(|name| ServoSettings::parse(after(name)?))
+            .collect();
+        Some(Self {
+            boot: after("boot").filter(|boot| is_name(boot))?.to_owned(),
+            deadman: after("deadman")?.parse().ok()?,
+            servos: servos?.try_into().ok()?,
+        })
+    }
+
+    /// The console's lines that set everything.
+    #[must_use]
+    pub fn lines(&self) -> Vec<String> {
+        let servos = self.servos.iter().zip(1..).flat_map(|(servo, n)| {
+            let [min, max] = servo.limit;
+            [
+                format!("dir {n} {}", servo.dir),
+                format!("scale {n} {:.2}", servo.scale),
+                format!("trim {n} {:.2}", servo.trim),
+                format!("limit {n} {min:.2} {max:.2}"),
+            ]
+        });
+        let rest = [
+            format!("boot {}", self.boot),
+            format!("deadman {}", self.deadman),
+        ];
+        servos.chain(rest).collect()
+    }
+
+    /// True if a robot would print the same for both; angles may differ by a turn.
+    #[must_use]
+    pub fn is_same(&self, other: &Self) -> bool {
+        let is_near = |a: f64, b: f64| (a - b).abs() < NEAR;
+        let is_same_angle = |a: f64, b: f64| {
+            let turn = (a - b).rem_euclid(360.0);
+            turn.min(360.0 - turn) < NEAR
+        };
+        let mut servos = self.servos.iter().zip(&other.servos);
+        self.boot == other.boot
+            && self.deadman == other.deadman
+            && servos.all(|(a, b)| {
+                is_near(a.trim, b.trim)
+                    && is_near(a.scale, b.scale)
+                    && a.dir == b.dir
+                    && is_same_angle(a.limit[0], b.limit[0])
+                    && is_same_angle(a.limit[1], b.limit[1])
+            })
+    }
+
+    /// The text of the file: TOML, so that a person can read and change it.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let Self { boot, deadman, .. } = self;
+        let mut text =
+            format!("{HEAD}format = \"{FORMAT}\"\nboot = \"{boot}\"\ndeadman = {deadman}\n");
+        for (name, servo) in NAMES.iter().zip(&self.servos) {
+            let ServoSettings {
+                trim,
+                limit,
+                dir,
+                scale,
+            } = servo;
+            text += &format!(
+                "\n[servo.{name}]\ntrim = {trim:?}\nlimit = {limit:?}\ndir = \"{dir}\"\nscale = {scale:?}\n"
+            );
+        }
+        text
+    }
+
+    /// Reads the text of a file of this name.
+    ///
+    /// # Errors
+    /// Returns the first mistake, with its line and key.
+    pub fn parse(text: &str, name: &str) -> Result<Self, Error> {
+        parse(text, Self::read).map_err(|error| Error {
+            file: name.to_owned(),
+            ..error
+        })
+    }
+
+    fn read(table: &DeTable) -> Checked<Self> {
+        let format = table.get("format").map(|value| value.get_ref().as_str());
+        if format != Some(Some(FORMAT)) {
+            let problem = format!("must be \"{FORMAT}\": this is no calibration that can be read");
+            return Err(Fault::new("format", problem));
+        }
+        let root = Section::root(table, &["format", "boot", "deadman", "servo"])?;
+        let boot = root.text("boot")?;
+        if !is_name(boot) {
+            return Err(root.fault("boot", "is not the name of a gait"));
+        }
+        let deadman = root.number("deadman", 0.0, f64::from(MAX_DEADMAN_MS), "ms")?;
+        if deadman.fract() != 0.0 {
+            return Err(root.fault("deadman", "must be a whole number of ms"));
+        }
+        let servos = root.section("servo", &NAMES)?;
+        let servo = |name| {
+            let keys = ["trim", "limit", "dir", "scale"];
+            ServoSettings::read(&servos.section(name, &keys)?)
+        };
+        let [a1, a2, a3, a4] = NAMES;
+        Ok(Self {
+            boot: boot.to_owned(),
+            deadman: deadman as u16,
+            servos: [servo(a1)?, servo(a2)?, servo(a3)?, servo(a4)?],
+        })
+    }
+}
+
+/// The lines that give a robot a calibration, unsaved, in an order that it accepts.
+///
+/// The robot refuses a line after which a gait would leave the servos' travel. On the way from one calibration to another that may
+/// happen although the result is valid. So refused lines are sent again after the others, and once more from robot.toml's settings.
+#[derive(Clone, Debug)]
+pub struct Transfer {
+    all: Vec<String>,
+    /// The lines of this round that were not sent yet.
+    left: VecDeque<String>,
+    last: String,
+    refused: Vec<String>,
+    /// Number of lines of this round.
+    round: usize,
+    is_from_factory: bool,
+}
+
+impl Transfer {
+    /// Makes a transfer; no line was sent yet.
+    #[must_use]
+    pub fn new(calibration: &Calibration) -> Self {
+        let all = calibration.lines();
+        Self {
+            left: all.clone().into(),
+            last: String::new(),
+            refused: Vec::new(),
+            round: all.len(),
+            is_from_factory: false,
+            all,
+        }
+    }
+
+    /// The next line to send; `None` if all are sent, or those that are left are refused again.
+    pub fn next_line(&mut self) -> Option<String> {
+        if self.left.is_empty() && !self.refused.is_empty() {
+            if self.refused.len() < self.round {
+                self.left = std::mem::take(&mut self.refused).into();
+            } else if !self.is_from_factory {
+                self.is_from_factory = true;
+                self.refused.clear();
+                self.left = self.all.clone().into();
+                self.left.push_front("factory".to_owned());
+            }
+            self.round = self.left.len();
+        }
+        self.last = self.left.pop_front()?;
+        Some(self.last.clone())
+    }
+
+    /// Notes that the robot has refused the last line; returns true if it is the first one in its round.
+    pub fn refuse(&mut self) -> bool {
+        self.refused.push(std::mem::take(&mut self.last));
+        self.refused.len() == 1
+    }
+
+    /// True if the robot has accepted all lines.
+    #[must_use]
+    pub fn is_done(&self) -> bool {
+        self.left.is_empty() && self.refused.is_empty()
+    }
+}
+
+/// True if a text may be the name of a gait, which is sent to the robot unchanged.
+fn is_name(text: &str) -> bool {
+    let letters = |c: char| c.is_ascii_alphanumeric() || c == ' ' || c == '-' || c == '_';
+    !text.is_empty() && text.len() <= 48 && text.chars().all(letters)
+}
+
+/// Refuses a number that the console could not take: it has hundredths.
+fn has_two_decimals(section: &Section, key: &str, value: f64) -> Checked<f64> {
+    match (value * 100.0 - (value * 100.0).round()).abs() < 1e-6 {
+        true => Ok(value),
+        false => Err(section.fault(
+            key,
+            format!("is {value}; it must have at most two decimals"),
+        )),
+    }
+}
+
+/// Rounds to hundredths, as the robot does, without a negative zero.
+fn hundredths(value: f64) -> f64 {
+    (value * 100.0).round() / 100.0 + 0.0
+}
+
+#[cfg(test)]
+mod tests;
