@@ -15,11 +15,12 @@ import {
   isRefused,
   type Predictions,
   type Refused,
-  Robot,
+  type Robot,
 } from './robot';
 import { type Banner, banner, type Status, status, reportedPose } from './status';
 import { type Cause, messageOf } from './trouble';
 import { SimulatedBoard } from './uno/board';
+import { type Measured, WalkedPath } from './walked';
 import { DONE, GAITS, WORDS } from './words';
 
 /** Frames of 20 ms between two poses of a board; a radio at 9600 baud carries no more. */
@@ -43,8 +44,6 @@ const FULL_PACE = 100;
 const FRAME_SECONDS = 0.02;
 /** Longest part of the simulation between two moments of `clock`, ms. */
 const PART = 5;
-/** Seconds of path kept for measuring a cycle: 3 s at a tenth of the pace. */
-const KEPT_SECONDS = 31;
 
 /** The fault of a robot that has received nothing for the time of `deadman`. */
 const LINK_FAULT = 'link';
@@ -80,14 +79,6 @@ export interface Listener {
   stopping(isStopping: boolean): void;
   /** Called with the current problem, or null once it is solved. */
   trouble(cause: Cause, message: string | null): void;
-}
-
-/** The last cycle: mm forward and left in the frame of its start, turn and largest lag of a leg, deg. */
-export interface Measured {
-  forward: number;
-  left: number;
-  turn: number;
-  lag: number;
 }
 
 /** Start of a Nano's boot section (high fuse 0xDA). A UNO's begins 1.5 KB later. */
@@ -133,11 +124,9 @@ export class Session {
   private code: Uint8Array | null = null;
   private set: Floor | null = null;
   private bootLoader: string | null = null;
-  private path: { time: number; frame: Frame }[] = [];
-  private time = 0;
+  private readonly path = new WalkedPath();
   /** Time for which the robot was followed so far, s: simulated, or measured by a board's poses. */
   clock = 0;
-  private step = FRAME_SECONDS;
   private onBanner: () => void = () => {};
   /** The board's firmware and robot; undefined until known. */
   private boardBanner: BoardBanner | undefined;
@@ -216,7 +205,7 @@ export class Session {
     this.description = answer;
     this.section = this.robot.section();
     this.robot.setFloor(this.floor);
-    this.path = [];
+    this.path.clear();
     this.last = this.robot.pose(answer.servos.map(({ neutral }) => neutral) as Four<number>, 1);
     this.listener.robot(answer);
     return null;
@@ -486,7 +475,7 @@ export class Session {
 
   private setPace(percent: number): void {
     // A cycle at two paces does not count.
-    if (percent !== this.pace) this.path = [];
+    if (percent !== this.pace) this.path.clear();
     this.pace = percent;
     this.listener.speed(percent);
   }
@@ -494,7 +483,7 @@ export class Session {
   private doing(gait: string): void {
     this.gait = gait;
     this.rests();
-    this.path = [];
+    this.path.clear();
     this.listener.doing(gait);
   }
 
@@ -647,26 +636,15 @@ export class Session {
   }
 
   private moved(frame: Frame, widths: Four<number> | null, seconds: number): void {
-    this.time += seconds;
-    this.step = seconds;
     this.last = frame;
-    this.path.push({ time: this.time, frame });
-    while (this.path[0].time < this.time - KEPT_SECONDS) this.path.shift();
+    this.path.add(frame, seconds);
     this.listener.frame(frame, widths, seconds);
   }
 
   /** Displacement in the last complete cycle of the gait; null before one is complete. */
   measured(): Measured | null {
     const gait = this.description.gaits.find(({ command }) => command === this.gait);
-    const now = this.path[this.path.length - 1];
-    if (!gait?.moves || !now) return null;
-    // The nearest known frame: a board on USB does not send every frame.
-    const start = now.time - (gait.period * FULL_PACE) / this.pace;
-    const from = this.path.findLastIndex(({ time }) => time <= start + this.step / 2);
-    if (from < 0) return null;
-    const lags = this.path.slice(from + 1).flatMap(({ frame }) => frame.lag.map(Math.abs));
-    const way = Robot.between(this.path[from].frame.place, now.frame.place);
-    return { ...way, lag: Math.max(0, ...lags) };
+    return gait?.moves ? this.path.measured((gait.period * FULL_PACE) / this.pace) : null;
   }
 
   /** The predictions that came with the page: for the file's robot with its own floor and servos; null for any other. */
@@ -677,7 +655,7 @@ export class Session {
   /** Takes the robot back to its start. */
   home(): void {
     this.robot.restart();
-    this.path = [];
+    this.path.clear();
   }
 
   /** Floor, mass and leg drive: as set in the page, or else as in the file. */
