@@ -28,6 +28,11 @@ export class Companion {
     return companion;
   }
 
+  /** Ends it; its last frame stays. */
+  end(): void {
+    this.robot.free();
+  }
+
   /** Sends a line with the next frame. */
   send(line: string): void {
     this.line += `${line}\n`;

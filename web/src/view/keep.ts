@@ -279,6 +279,7 @@ export class Keep {
 
   private removeCompanion(): void {
     if (this.pair) this.say('', this.pair.output);
+    this.companion?.end();
     Object.assign(this, { companion: null, pair: null, isWaiting: false });
     this.updateButtons();
   }
