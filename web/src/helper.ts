@@ -3,20 +3,31 @@ import { type Remote, wrap } from 'comlink';
 
 export class Helper<Functions> {
   private readonly functions: Remote<Functions>;
-  /** Fails if the worker cannot be loaded. */
-  private readonly failed: Promise<never>;
+  /** The reason why the worker cannot be loaded. */
+  private trouble: Error | null = null;
+  /** Those who wait for an answer, by the functions that tell them of a failure. */
+  private readonly waiting = new Set<(error: Error) => void>();
 
   constructor(private readonly worker: Worker) {
     this.functions = wrap<Functions>(worker);
-    this.failed = new Promise((_, fail) => {
-      worker.addEventListener('error', ({ message }) => fail(new Error(message || 'the worker could not be loaded')));
+    worker.addEventListener('error', ({ message }) => {
+      this.trouble = new Error(message || 'the worker could not be loaded');
+      for (const fail of this.waiting) fail(this.trouble);
     });
-    this.failed.catch(() => {});
   }
 
-  /** Calls a function. Fails with what it throws, or if the worker cannot be loaded; calls are answered in their order. */
-  ask<Answer>(call: (functions: Remote<Functions>) => Promise<Answer>): Promise<Answer> {
-    return Promise.race([call(this.functions), this.failed]);
+  /** Calls a function. Fails with what it throws, or if the worker cannot be loaded. */
+  async ask<Answer>(call: (functions: Remote<Functions>) => Promise<Answer>): Promise<Answer> {
+    if (this.trouble) throw this.trouble;
+    let failed: (error: Error) => void = () => {};
+    try {
+      return await new Promise<Answer>((done, fail) => {
+        this.waiting.add((failed = fail));
+        call(this.functions).then(done, fail);
+      });
+    } finally {
+      this.waiting.delete(failed);
+    }
   }
 
   /** Ends the worker; calls under way are not answered. */

@@ -235,4 +235,17 @@ test('the sheet is that of the command, for both paper sizes', async () => {
   }
 });
 
+test('a worker that cannot be loaded is reported, and loaded when it is asked for again', async () => {
+  await openWithCamera(null);
+  const opened = await openRoom({ acceptDownloads: true });
+  const before = complaints.length;
+  await opened.route(/assets\/worker-/, (route) => route.abort());
+  await opened.getByRole('button', { name: 'Print the sheet' }).click();
+  await waitForMessage(opened, 'said', /^the worker could not be loaded/);
+  await opened.unroute(/assets\/worker-/);
+  await Promise.all([opened.waitForEvent('download'), opened.getByRole('button', { name: 'Print the sheet' }).click()]);
+  // The browser names the file that did not come, which is right.
+  for (const complaint of complaints.splice(before)) assert.match(complaint, /Failed to load|worker/i);
+});
+
 test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));
