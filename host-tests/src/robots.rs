@@ -12,10 +12,10 @@ use crate::random_robot::random_robot;
 /// Number of random robots in a run.
 const RANDOM: u64 = 8;
 
-/// A robot and its origin.
+/// A robot and its name in messages.
 #[derive(Debug)]
 pub struct Named {
-    /// The robot's file, or its seed.
+    /// The name for messages, such as the robot's file.
     pub name: String,
     /// The robot.
     pub robot: Robot,
@@ -26,22 +26,22 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// The robot under test: the file that `LIZARD_ROBOT` names, seen from the root
-/// of the repository, or the repository's robot.toml. `make test ROBOT=...` sets
-/// it, and builds the firmware from the same file.
+/// The robot under test: the file that `LIZARD_ROBOT` names, relative to the root of the
+/// repository, or else the repository's robot.toml. `make test ROBOT=...` sets the variable,
+/// and builds the firmware from the same file.
 ///
 /// # Panics
-/// If the file is missing or wrong.
+/// If the file is missing or invalid.
 pub fn robot() -> &'static Robot {
     static ROBOT: LazyLock<Robot> = LazyLock::new(|| load(&file()));
     &ROBOT
 }
 
-/// The robot under test with two inputs and a routine. If they need the room, it has fewer
-/// gaits.
+/// The robot under test with two inputs and a routine added. If flash has no room for them, some
+/// gaits are left out.
 ///
 /// # Panics
-/// If it has no room for them even with one gait.
+/// If there is no room even with one gait.
 pub fn patrolling() -> &'static Robot {
     static ROBOT: LazyLock<Robot> = LazyLock::new(|| {
         let text = std::fs::read_to_string(file()).expect("a robot.toml");
@@ -60,7 +60,7 @@ pub fn patrol_of(text: &str) -> Result<Robot, lizard_robot::Error> {
     with_patrol(text, &[REST]).or_else(|error| {
         let robot = Robot::parse(text)?;
         let names = robot.gaits().iter().skip(1).map(|gait| gait.name());
-        // A gait that another is like, or that a routine does, cannot be left out.
+        // A gait to which another gait or a routine refers cannot be left out.
         let mut fewer = names.rev().map(|name| without_gait(text, name));
         let fewer = fewer.find(|text| Robot::parse(text).is_ok()).ok_or(error)?;
         patrol_of(&fewer)
@@ -72,20 +72,20 @@ fn file() -> PathBuf {
     root().join(given.unwrap_or_else(|| "robot.toml".into()))
 }
 
-/// The paper's robot, for tests that hold its figures.
+/// The paper's robot, for tests that check the paper's figures.
 ///
 /// # Panics
-/// If robots/paper.toml is missing or wrong.
+/// If robots/paper.toml is missing or invalid.
 pub fn paper() -> &'static Robot {
     static ROBOT: LazyLock<Robot> = LazyLock::new(|| load(&root().join("robots/paper.toml")));
     &ROBOT
 }
 
-/// The robot under test, every file of robots/, and random robots: the same ones
-/// in every run with the same [`seed`].
+/// The robot under test, every robot of robots/, and random robots, which are the same in every
+/// run with the same [`seed`].
 ///
 /// # Panics
-/// If one of the files is wrong; the message names it.
+/// If one of the files is invalid; the message names it.
 pub fn robots() -> &'static [Named] {
     static ROBOTS: LazyLock<Vec<Named>> = LazyLock::new(|| {
         let mut robots = vec![Named {
@@ -120,10 +120,10 @@ pub fn robots() -> &'static [Named] {
     &ROBOTS
 }
 
-/// The seed of random numbers: `PROPTEST_RNG_SEED`, or 1.
+/// The seed of all random numbers: `PROPTEST_RNG_SEED`, or 1 if it is not set.
 ///
 /// # Panics
-/// If that is no whole number.
+/// If the variable is not a whole number.
 pub fn seed() -> u64 {
     let given = std::env::var("PROPTEST_RNG_SEED").ok();
     given.map_or(1, |seed| {

@@ -1,12 +1,12 @@
-//! The robot and its floor, as the contact model has them.
+//! The robot and its floor in the contact model.
 //!
-//! Planar, quasi-static, Coulomb friction. At each instant the pads slide so that the
-//! power lost to friction is least: the body takes the twist (vx, vy, omega) that
-//! minimises `sum mu N |v + omega x r_i + dr_i/dt|` over the feet. Three feet that move
-//! together win against one that returns, and the body advances. Speed, weight and a
-//! common friction coefficient cancel, as long as the legs are rigid. If springs drive the
-//! legs, each step minimises the friction's work and the springs' energy together, and the
-//! ratio of friction to stiffness decides the lag of a leg behind its servo.
+//! Planar, quasi-static, Coulomb friction. At each instant the pads slide so that the power
+//! lost to friction is minimal: the body moves with the twist (vx, vy, omega) that minimises
+//! `sum mu N |v + omega x r_i + dr_i/dt|` over the feet. Three feet in stance, which move
+//! together, win against one in swing, and the body advances. Speed, weight and a common
+//! friction coefficient cancel, as long as the legs are rigid. If springs drive the legs, each
+//! step minimises the friction's work and the springs' energy together, and the ratio of
+//! friction to stiffness decides the lag of a leg behind its servo.
 
 use crate::drive::Drive;
 use crate::feet::{Body, Feet};
@@ -24,7 +24,7 @@ pub struct Ground {
     /// Friction coefficient of a pad that slides forward. It has an effect only together with
     /// a spring.
     pub friction: f64,
-    /// Friction of a pad that slides backward over that of one that slides
+    /// Friction coefficient of a pad that slides backward, divided by that of one that slides
     /// forward.
     pub ratio: f64,
     /// Drive of each leg from its servo's link.
@@ -44,7 +44,7 @@ impl Ground {
         }
     }
 
-    /// Loads of the feet at these places (forward, left in mm, servo order), relative to the mean.
+    /// Loads of feet at these places (forward, left in mm, servo order), as shares of the mean.
     pub fn loads(&self, feet: [[f64; 2]; 4]) -> [f64; 4] {
         self.stance.loads(&self.body, feet)
     }

@@ -2,19 +2,19 @@
 //!
 //! The pins of a servo's leg and crank turn with it, so their friction is one torque at the servo.
 //! A slider joins the arms of two servos: it resists the change of its length, with a lever that
-//! depends on both angles. In a common stroke of all legs it hardly moves; when one leg returns,
-//! its servo drags the slider as well.
+//! depends on both angles. It hardly moves while all legs move together; when one leg swings
+//! alone, its servo must move the slider, too.
 
 use crate::legs::FORWARD;
 
 /// The friction of the mechanism between the servos and their legs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Joints {
-    /// Dry friction of the pins that a servo turns, N mm.
+    /// Torque of the dry friction in the pins that a servo turns, N mm.
     pub drag: f64,
-    /// Dry friction of a slider, N.
+    /// Force of the dry friction in a slider, N.
     pub slider: f64,
-    /// Arms of the sliders at neutral, from their shafts: forward, left, mm; servo order.
+    /// Arms of the sliders from the servos' shafts at neutral: forward, left, mm; servo order.
     pub arms: [[f64; 2]; 4],
     /// Distance from the hind shafts to the front ones, mm.
     pub base: f64,
@@ -46,8 +46,8 @@ impl Joints {
         levers
     }
 
-    /// Torques of the sliders on the servos, N mm, at sweeps in deg and rates in rad/s. Below
-    /// `slow` mm/s the friction fades, so that it does not turn a servo back.
+    /// Torques of the sliders on the servos, N mm, at sweeps in deg and rates in rad/s. Below a
+    /// slider speed of `slow` mm/s the friction falls to 0, so that it never turns a servo back.
     pub(crate) fn torques(&self, sweeps: [f64; 4], rates: [f64; 4], slow: f64) -> [f64; 4] {
         if self.slider == 0.0 {
             return [0.0; 4];

@@ -4,8 +4,8 @@
 //! one diagonal may carry more and the other less, and all forces still balance. The
 //! lengths of the feet and their stiffness decide. If a foot is `twist` mm too long, it
 //! and the foot across from it carry more by a quarter of `twist` times the stiffness,
-//! and the other two carry less by as much. Three feet that hold while one returns are no
-//! longer a majority if two of them hardly touch the floor.
+//! and the other two carry less by as much. In a gait three feet hold the body while
+//! the fourth swings; that fails if two of the three hardly touch the floor.
 //!
 //! So a foot is modelled as a spring that only pushes: a foot that would have to pull is
 //! in the air.
@@ -45,8 +45,8 @@ impl Stance {
         ..Self::DEFAULT
     };
 
-    /// Extra load of the front left foot and of the one across, if the feet stand in a rectangle,
-    /// N; the other two carry as much less.
+    /// Extra load that `twist` puts on the front left and the hind right foot, N, if the feet
+    /// stand in a rectangle; the other two carry as much less.
     pub fn diagonal(&self) -> f64 {
         self.stiffness * self.twist / 4.0
     }
@@ -54,9 +54,9 @@ impl Stance {
     /// Computes the load of each foot as a share of the mean, with feet at these places (forward,
     /// left in mm, servo order); 0 for a foot in the air.
     ///
-    /// The feet give, and the chassis does not: it sinks and tilts, so the load has a part of
-    /// the foot's own length and a part that is linear in its place. Three equations of balance
-    /// determine the latter.
+    /// The feet are springs and the chassis is rigid: it sinks and tilts. So a foot's load is a
+    /// part from its own length plus a part that is linear in its place. The three equations of
+    /// balance determine the latter.
     pub fn loads(&self, body: &Body, feet: [Point; 4]) -> [f64; 4] {
         let by_length = [
             self.stiffness * self.twist / body.mean_load(),
@@ -78,7 +78,7 @@ impl Stance {
                 false => *pressure <= ZERO_LOAD,
             })
         };
-        // A robot that falls over matches none of these cases.
+        // A robot that falls over matches none of these cases; it gets the first one.
         let (stands, pressures) = cases.iter().find(is_consistent).unwrap_or(&cases[0]);
         std::array::from_fn(|i| {
             if stands[i] {
@@ -90,8 +90,8 @@ impl Stance {
     }
 }
 
-/// Computes the load of each foot as a share of the mean, if only some of them stand; a foot with
-/// a negative load is above the floor.
+/// Computes the load of each foot as a share of the mean if only the feet in `stands` touch the
+/// floor. A negative load means that such a foot pulls, or that another one is above the floor.
 fn pressures(feet: [Point; 4], by_length: [f64; 4], centre: Point, stands: [bool; 4]) -> [f64; 4] {
     let mut matrix = [[0.0; 3]; 3];
     let mut moments = [4.0, 4.0 * centre[0], 4.0 * centre[1]];
@@ -130,8 +130,8 @@ mod tests {
         }
     }
 
-    /// Computes the loads by letting the body sink until its feet carry it: heave, pitch and roll
-    /// follow their forces.
+    /// Computes the loads by iteration: heave, pitch and roll follow the unbalanced force and
+    /// moments until the feet carry the body.
     fn settled(stance: &Stance, body: &Body, feet: [Point; 4]) -> [f64; 4] {
         let (mut heave, mut pitch, mut roll) = (0.0, 0.0, 0.0);
         let stiffness = stance.stiffness / body.mean_load();
@@ -194,7 +194,7 @@ mod tests {
         for (load, sign) in loads.into_iter().zip([1.0, -1.0, 1.0, -1.0]) {
             assert!((load - 1.0 - sign * share).abs() < 1e-9, "{loads:?}");
         }
-        // One that is much too long carries half the robot, and so does the one across.
+        // A foot that is much too long carries half the robot, and the one across the other half.
         let loads = twisted(10.0).loads(&Body::DEFAULT, AT);
         for (load, expected) in loads.into_iter().zip([2.0, 0.0, 2.0, 0.0]) {
             assert!((load - expected).abs() < 1e-6, "{loads:?}");
@@ -203,12 +203,12 @@ mod tests {
 
     #[test]
     fn a_foot_never_pulls() {
-        // Beyond the line through two feet the third leaves the floor.
+        // The centre is beyond the diagonal through feet 1 and 3, so foot 2 leaves the floor.
         let loads = Stance::LEVEL.loads(&body([30.0, 50.0]), AT);
         assert_eq!(loads[2], 0.0);
         assert!(loads.iter().all(|load| *load >= 0.0), "{loads:?}");
         assert!((loads.iter().sum::<f64>() - 4.0).abs() < 1e-9);
-        // A robot that falls over has feet that carry, and no others.
+        // No foot pulls even if the robot falls over.
         let fallen = Stance::LEVEL.loads(&body([200.0, 0.0]), AT);
         assert!(fallen.iter().all(|load| *load >= 0.0), "{fallen:?}");
     }

@@ -1,28 +1,28 @@
-//! The edges of a tag to a small part of a pixel.
+//! Finds the edges of a tag with an error much smaller than a pixel.
 //!
-//! Lens and movement spread an edge over some pixels, but alike to both sides. So along a line
-//! across it, the place of the edge is where the whole step of brightness would be, if it had
-//! the same sum of grey. A straight line through many of these places has an error that is much
-//! smaller than a pixel, and two lines meet in a corner.
+//! Lens and movement blur an edge over several pixels, but equally to both sides. So along a line
+//! across the edge, the sum of grey is the same as for a sharp step, and that step's place is the
+//! place of the edge. A straight line is fitted to many of these places. Its error is much smaller
+//! than a pixel, and two lines meet in a corner.
 
 use crate::blobs::Quad;
 use crate::picture::{Picture, Pixel};
 use crate::sheet::SQUARES;
 
-/// Share of an edge at either end that is left out, where the other edge is near.
+/// Share of an edge that is left out at either end, since the next edge is near there.
 const ENDS: f64 = 0.12;
-/// Distance across an edge that is looked at on either side, px, if the tag is large enough.
+/// Distance to either side of an edge over which grey is sampled, px, if the tag is large enough.
 const ACROSS: f64 = 4.0;
-/// The same for small tags, as a share of a square: the code begins after a square, and the first corners are
-/// off by a pixel.
+/// The same for small tags, as a share of a square's width: the code begins one square inside, and the first
+/// corners have an error of a pixel.
 const ACROSS_SQUARE: f64 = 0.6;
-/// Step across an edge, px.
+/// Distance between samples across an edge, px.
 const STEP: f64 = 0.5;
-/// Least step of brightness of an edge.
+/// Smallest difference of brightness that counts as an edge, in grey levels.
 const LEAST_CONTRAST: f64 = 25.0;
-/// Largest mean distance of an edge's places from their line, px.
+/// Largest root mean square distance of an edge's places from the fitted line, px.
 const STRAIGHT: f64 = 0.7;
-/// Rounds in which the lines are found again from better corners.
+/// Number of iterations, each of which fits the lines again from better corners.
 const ROUNDS: usize = 3;
 
 /// The corners of a black square to sub-pixel accuracy.
@@ -30,7 +30,7 @@ const ROUNDS: usize = 3;
 pub(crate) struct Square {
     /// The corners, clockwise as seen in the picture.
     pub corners: Quad,
-    /// The grey between black and white.
+    /// The grey level halfway between black and white.
     pub middle: f64,
 }
 
@@ -65,7 +65,7 @@ pub(crate) fn refine(picture: &Picture, quad: Quad) -> Option<Square> {
     Some(square)
 }
 
-/// The edge between two corners, and the grey in its middle.
+/// Fits the edge between two corners; returns it with the grey halfway from black to white, or `None`.
 fn edge(picture: &Picture, from: Pixel, to: Pixel) -> Option<(Line, f64)> {
     let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
     let length = dx.hypot(dy);
@@ -103,7 +103,7 @@ fn edge(picture: &Picture, from: Pixel, to: Pixel) -> Option<(Line, f64)> {
     if white - black < LEAST_CONTRAST {
         return None;
     }
-    // The straight line t = offset + slope s by least squares, s from the middle.
+    // Fits the straight line t = offset + slope s by least squares; s starts at the middle of the edge.
     let (mut sum, mut moment, mut square) = (0.0, 0.0, 0.0);
     let mut places = Vec::with_capacity(count);
     for (i, profile) in profiles.chunks(2 * half + 1).enumerate() {
@@ -132,7 +132,7 @@ fn edge(picture: &Picture, from: Pixel, to: Pixel) -> Option<(Line, f64)> {
     Some((line, (black + white) / 2.0))
 }
 
-/// The point in which two lines meet.
+/// The point in which two lines meet; `None` if they are parallel.
 fn meet(a: &Line, b: &Line) -> Option<Pixel> {
     let cross = a.along[0] * b.along[1] - a.along[1] * b.along[0];
     let [x, y] = [b.at[0] - a.at[0], b.at[1] - a.at[1]];

@@ -1,4 +1,4 @@
-//! The map from a plane to a picture of it, from four points or more.
+//! The map from a plane to a picture of it, computed from four or more points.
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
@@ -7,17 +7,18 @@ use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 pub(crate) struct Homography(pub Matrix3<f64>);
 
 impl Homography {
-    /// The map of four points.
+    /// The map from four points to four others; `None` if they do not determine one.
     pub(crate) fn of_four(from: [[f64; 2]; 4], to: [[f64; 2]; 4]) -> Option<Self> {
         Self::of_points(&from, &to)
     }
 
-    /// The map of points by least squares of their equations.
+    /// The map that fits four or more pairs of points, by least squares of their linear equations;
+    /// `None` if they do not determine one.
     pub(crate) fn of_points(from: &[[f64; 2]], to: &[[f64; 2]]) -> Option<Self> {
         let rows = 2 * from.len().min(to.len());
         let mut matrix = DMatrix::zeros(rows, 8);
         let mut right = DVector::zeros(rows);
-        // Units of the points' own size, so that all columns are alike.
+        // The points are scaled to at most 1, so that the columns are of similar size.
         let scale = from
             .iter()
             .flatten()
@@ -54,7 +55,7 @@ impl Homography {
         [image.x / image.z, image.y / image.z]
     }
 
-    /// The opposite map.
+    /// The inverse map; `None` if there is none.
     pub(crate) fn inverse(&self) -> Option<Self> {
         self.0.try_inverse().map(Self)
     }

@@ -1,12 +1,12 @@
-//! The mean of a film's cycles and its honest standard error.
+//! The mean of a film's cycles and its standard error.
 //!
-//! A robot walks every cycle a little differently, by more than a tag's place is uncertain. So the
-//! spread of the cycles tells how well their mean is known. A few cycles tell their own spread badly: Student's
-//! distribution says by how much the error has to be larger for that. With it, the truth lies within two
-//! errors as often as for a film of many cycles.
+//! The cycles of a robot differ by more than the error of a tag's position. So the spread of the cycles
+//! gives the error of their mean. The spread of a few cycles is itself uncertain: Student's distribution
+//! tells by how much the error has to be enlarged for that. Then the true value lies within two errors
+//! as often as for a film of many cycles.
 //!
-//! A gait that is walked several times may differ more from one walk to the next than the cycles of a walk do: it
-//! starts elsewhere on the floor. Then the walks count, and not their cycles.
+//! Several walks of a gait may differ more from each other than the cycles of a walk do, since each starts
+//! elsewhere on the floor. Then the walks count as the samples, and not their cycles.
 
 /// Share of a normal distribution within two standard deviations.
 const WITHIN_TWO: f64 = 0.9545;
@@ -14,20 +14,20 @@ const WITHIN_TWO: f64 = 0.9545;
 /// A mean over the cycles of a film.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mean {
-    /// The mean.
+    /// The mean, in the unit of the cycles' values.
     pub mean: f64,
     /// Spread of single cycles: their standard deviation.
     pub spread: f64,
-    /// Standard error of the mean: the truth lies within two of it with a probability of 95 %.
+    /// Standard error of the mean: the true value is within twice this with a probability of 95 %.
     pub error: f64,
-    /// The part of the error that more cycles do not make smaller: that of camera, clock and ruler.
+    /// The part of the error that more cycles do not reduce: that of camera, clock and ruler.
     pub common: f64,
 }
 
-/// The cycles of a walk, and the part of the error that they share.
+/// The values of a walk's cycles, and the part of the error that they share.
 pub(crate) type Cycles = (Vec<f64>, f64);
 
-/// The mean over walks of two cycles or more.
+/// Computes the mean over walks of two cycles or more.
 pub(crate) fn of(walks: &[Cycles]) -> Mean {
     let count = walks.iter().map(|(cycles, _)| cycles.len()).sum::<usize>();
     let own = |cycles: &[f64]| cycles.iter().sum::<f64>() / cycles.len() as f64;
@@ -53,7 +53,7 @@ pub(crate) fn of(walks: &[Cycles]) -> Mean {
         false => (within, freedom),
     };
     let error = (variance / count as f64).sqrt() * widening(freedom);
-    // Camera, clock and ruler are the same for all walks, or nearly.
+    // Camera, clock and ruler are nearly the same for all walks, so more walks do not reduce their error.
     let common = weighted(&|(_, common)| *common);
     Mean {
         mean,
@@ -63,7 +63,7 @@ pub(crate) fn of(walks: &[Cycles]) -> Mean {
     }
 }
 
-/// The factor on an error whose spread is known from a few degrees of freedom.
+/// The factor that enlarges an error whose spread was estimated with few degrees of freedom.
 pub(crate) fn widening(freedom: usize) -> f64 {
     let (mut low, mut high) = (1.0, 100.0);
     for _ in 0..60 {
@@ -157,7 +157,7 @@ mod tests {
                 (mean.mean - 3.0).abs() < 2.0 * mean.error
             });
             let share = within.count() as f64 / f64::from(films);
-            // Whether two walks differ is known badly.
+            // Two or three walks hardly show if walks differ, so the bounds are wide.
             assert!((0.9..0.99).contains(&share), "{differ} {walks}: {share}");
         }
     }

@@ -1,12 +1,12 @@
-//! The printed sheet: which tags lie where, the one home of these figures.
+//! The layout of the printed sheet of tags. All its dimensions are defined here.
 //!
 //! The robot covers more than a sheet of paper, so the sheet is cut: two strips lie on the floor
-//! beside the robot's way, one on either side, and a card lies on its deck. The two tags of a
-//! strip have a known distance, which gives every scale; where the strips lie is found in
-//! the film, so nobody has to measure it. A ruler line on a strip shows how large the printer
-//! made all of it.
+//! beside the robot's path, one on either side, and a card lies on its deck. The two tags of a
+//! strip have a known distance, which gives the scale; the strips' positions are found in
+//! the film, so nobody has to measure them. A ruler line on each strip shows the scale at
+//! which the sheet was printed.
 //!
-//! The tags are ids 0 to 4 of the AprilTag family 36h11, so other programs can read them, too.
+//! The tags have ids 0 to 4 of the AprilTag family 36h11, so other programs can read them, too.
 
 /// A point of the sheet or of a tag, mm: to the right, up.
 pub type Point = [f64; 2];
@@ -27,7 +27,7 @@ pub const CODES: [u64; 5] = [
 pub const STRIPS: usize = 2;
 /// The number of tags on a strip.
 pub const TAGS_ON_STRIP: usize = 2;
-/// The number of tags on the floor. Their ids come first.
+/// The number of tags on the floor. Their ids start at 0.
 pub const FLOOR_TAGS: usize = STRIPS * TAGS_ON_STRIP;
 /// The id of the tag on the deck.
 pub const DECK_TAG: usize = FLOOR_TAGS;
@@ -39,21 +39,21 @@ pub const DECK_EDGE: f64 = 36.0;
 pub const SPAN: f64 = 200.0;
 /// Length and width of a strip, mm: its tags with a white margin wider than one of their squares.
 pub const STRIP: [f64; 2] = [266.0, 66.0];
-/// Width and length of the deck's card, mm. The tag is at the lower end, and the upper one shows to the head.
+/// Width and length of the deck's card, mm. The tag is at the lower end; the upper end points to the head.
 pub const CARD: [f64; 2] = [50.0, 60.0];
 /// White margin around the deck's tag, mm.
 pub const CARD_MARGIN: f64 = 7.0;
 /// Length of the line that shows the printer's scale, mm.
 pub const RULER: f64 = 100.0;
-/// Name of the end of the robot that the card's arrow shows.
+/// Word beside the card's arrow: the end of the robot that it points to.
 pub const FORWARD_WORD: &str = "HEAD";
 
-/// The strip of a floor tag.
+/// The strip of a floor tag, counted from 0.
 pub fn strip_of(id: usize) -> usize {
     id / TAGS_ON_STRIP
 }
 
-/// The middle of a floor tag, mm, from the middle of its strip, along the strip.
+/// The middle of a floor tag, mm, relative to the middle of its strip; x runs along the strip.
 pub fn middle_on_strip(id: usize) -> Point {
     let end = (id % TAGS_ON_STRIP) as f64 * 2.0 - 1.0;
     [end * SPAN / 2.0, 0.0]
@@ -68,13 +68,13 @@ pub fn edge(id: usize) -> f64 {
     }
 }
 
-/// The corners of a tag from its middle, mm: top left, top right, bottom right, bottom left.
+/// The corners of a tag relative to its middle, mm: top left, top right, bottom right, bottom left.
 pub fn corners(edge: f64) -> [Point; 4] {
     let half = edge / 2.0;
     [[-half, half], [half, half], [half, -half], [-half, -half]]
 }
 
-/// The colour of a tag's square: true if it is white. The first row is the top one.
+/// True if a square of a tag is white. Row 0 is the top one, column 0 the left one.
 pub fn is_white(id: usize, row: usize, column: usize) -> bool {
     let code = 1..SQUARES - 1;
     let inside = code.contains(&row) && code.contains(&column);
@@ -86,7 +86,7 @@ pub fn is_white(id: usize, row: usize, column: usize) -> bool {
 mod tests {
     use super::*;
 
-    /// The four codes that a tag shows as it is turned.
+    /// The codes of a tag in its four orientations.
     fn turned(id: usize) -> [u64; 4] {
         let bit = |row: usize, column: usize| u64::from(is_white(id, row + 1, column + 1));
         let read = |at: &dyn Fn(usize, usize) -> u64| {

@@ -1,4 +1,4 @@
-//! The robot.toml with the new values.
+//! Writes the identified values into the text of a robot.toml.
 
 use lizard_robot::{Robot, edit};
 
@@ -6,8 +6,8 @@ use crate::outcome::{Found, Identified};
 use crate::trouble::Trouble;
 
 impl Identified {
-    /// Writes the moved keys into the text of the robot's file, each with a comment; all else stays as it is, byte for
-    /// byte.
+    /// Writes the keys with a new value into the text of the robot's file, each with a comment; all other bytes stay
+    /// unchanged.
     ///
     /// # Errors
     /// Fails if the text has no place for a key, or the robot with the new values is refused.
@@ -25,7 +25,7 @@ impl Identified {
     }
 }
 
-/// Writes the numbers of a key, one or a list.
+/// Writes the value of a key, one number or a list, with a comment about the numbers that moved.
 fn with_key(text: &str, numbers: &[&Found]) -> Result<String, edit::NoSuchKey> {
     let name = numbers[0].key.name;
     let values: Vec<f64> = numbers.iter().map(|found| found.written()).collect();
@@ -43,7 +43,7 @@ impl Found {
         self.verdict == crate::Verdict::Moved
     }
 
-    /// The value in the new file.
+    /// The value for the new file, rounded if it moved.
     fn written(&self) -> f64 {
         if !self.is_moved() {
             return self.before;

@@ -5,23 +5,23 @@ use serde::Serialize;
 
 use crate::part::PARTS;
 
-/// The least and the largest predicted way ahead, or turn, of a cycle if one assumption at a time is set to
-/// either end of its plausible range.
+/// The least and the largest predicted movement per cycle, ahead or in turn, while one assumption at a
+/// time is set to either end of its plausible range.
 #[derive(Debug, Serialize)]
 pub(crate) struct Range {
     /// The part of the movement, one of [`PARTS`].
     part: &'static str,
     /// The least predicted movement, mm or deg.
     least: f64,
-    /// The largest.
+    /// The largest predicted movement, mm or deg.
     most: f64,
-    /// The assumption that is changed at each end; null if all are as in robot.toml.
+    /// The assumption whose change gives `least` or `most`; null if all are as in robot.toml.
     least_by: Option<&'static str>,
     most_by: Option<&'static str>,
 }
 
 impl Range {
-    /// Computes the range of a gait at this pace; 1 is the gait's own.
+    /// Computes the range of a gait at a pace, as a multiple of the gait's own.
     pub(crate) fn of(robot: &Robot, gait: &CheckedGait, pace: f64) -> Self {
         let range = MovementRange::of(robot, gait, pace);
         let [least, most] = [range.least, range.most];

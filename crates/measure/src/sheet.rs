@@ -1,4 +1,4 @@
-//! The sheet of tags as a page: pieces, tags, ruler and what to do with them.
+//! The sheet of tags as a PDF page: pieces, tags, ruler and instructions.
 
 use lizard_film::sheet::{
     CARD, CARD_MARGIN, DECK_EDGE, DECK_TAG, FORWARD_WORD, Point, RULER, SQUARES, STRIP, STRIPS,
@@ -6,10 +6,10 @@ use lizard_film::sheet::{
 };
 use pdf_writer::{Content, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
 
-/// A point of PDF, mm.
+/// The unit of PDF, a point, in mm.
 const POINT: f64 = 25.4 / 72.0;
 const FONT: Name = Name(b"F1");
-/// Size of the type, and from one line to the next, mm.
+/// Font size, and distance from one line to the next, mm.
 const TYPE: f64 = 3.3;
 const LINE: f64 = 4.7;
 /// Thickness of the cut lines and of the ruler, mm.
@@ -18,7 +18,7 @@ const RULED: f64 = 0.3;
 /// Grey of the cut lines.
 const CUT_GREY: f32 = 0.6;
 
-/// How to print, lay and glue the sheet; the first lines of the page.
+/// Instructions to print, cut, lay and glue the sheet; they stand beside the card.
 const WORDS: [&str; 9] = [
     "1. Print at 100 % (\"actual size\"). Measure the line between the tags of a strip: if it is not 100 mm",
     "    long, tell lizard measure its length with --ruler.",
@@ -31,7 +31,7 @@ const WORDS: [&str; 9] = [
     "    before the robot starts: five to ten cycles of one gait.",
 ];
 
-/// The paper of a printer.
+/// A paper size of printers, in landscape.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Paper {
     /// 297 x 210 mm.
@@ -75,12 +75,12 @@ impl Paper {
     }
 }
 
-/// A length in points.
+/// Converts mm to points.
 fn points(mm: f64) -> f32 {
     (mm / POINT) as f32
 }
 
-/// Everything on the page.
+/// Draws the whole page.
 fn drawing(paper: Paper) -> Content {
     let mut content = Content::new();
     let [width, height] = paper.size();
@@ -99,7 +99,7 @@ fn drawing(paper: Paper) -> Content {
     content
 }
 
-/// A strip, the lower left corner of which is at a point.
+/// Draws a strip with its lower left corner at a point.
 fn draw_strip(content: &mut Content, strip: usize, [x, y]: Point) {
     cut_line(content, [x, y], STRIP);
     let middle = [x + STRIP[0] / 2.0, y + STRIP[1] / 2.0];
@@ -124,7 +124,7 @@ fn draw_strip(content: &mut Content, strip: usize, [x, y]: Point) {
     write(content, words, [begin, middle[1] - 10.0]);
 }
 
-/// The card of the deck, the lower left corner of which is at a point.
+/// Draws the deck's card with its lower left corner at a point.
 fn draw_card(content: &mut Content, [x, y]: Point) {
     cut_line(content, [x, y], CARD);
     let middle = x + CARD[0] / 2.0;
@@ -143,8 +143,8 @@ fn draw_card(content: &mut Content, [x, y]: Point) {
     write(content, FORWARD_WORD, [middle + 6.0, base + 2.0]);
 }
 
-/// A tag around its middle: a black square and white ones on it, because between black ones that touch, printers
-/// and viewers may leave a seam.
+/// Draws a tag around its middle: a black square with white ones on it. Single black squares would touch, and
+/// printers and viewers may leave a seam between them.
 fn draw_tag(content: &mut Content, id: usize, [x, y]: Point) {
     let square = edge(id) / SQUARES as f64;
     let half = edge(id) / 2.0;

@@ -11,7 +11,7 @@ use crate::decimals;
 /// The effect of a leg's spring in its strut.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SpringEffect {
-    /// Length of the spring inside its hooks in the strut, mm.
+    /// Length of the spring mounted in the strut, mm, measured inside its hooks.
     #[serde(serialize_with = "decimals::one::<1000, _>")]
     pub installed: f64,
     /// Force at that length, N.
@@ -30,7 +30,7 @@ pub struct SpringEffect {
     /// Lag of a leg at the slot's end, deg: the least and the greatest of all gaits.
     #[serde(serialize_with = "decimals::each::<1000, _>")]
     pub way: [f64; 2],
-    /// Torque on the leg there, N mm, likewise.
+    /// Torque on the leg at the slot's end, N mm: the least and the greatest of all gaits.
     #[serde(serialize_with = "decimals::each::<1000, _>")]
     pub end: [f64; 2],
     /// Torque that the friction of its pad exerts on a leg, N mm.
@@ -42,17 +42,17 @@ pub struct SpringEffect {
 }
 
 impl SpringEffect {
-    /// True if a servo can go on turning at the slot's end, with less than seven tenths of
+    /// True if a servo can go on turning at the slot's end: the torque there is less than 0.7 of
     /// its stall torque.
     pub fn lets_servo_turn(&self) -> bool {
         self.end[1] < 0.7 * self.stall
     }
 
-    /// The effect on the robot's legs, whose struts are equal; `None` if these are rigid.
+    /// The effect on the robot's legs, whose struts are equal; `None` if the struts are rigid.
     pub fn of(assembly: &Assembly) -> Option<Self> {
         let robot = assembly.robot();
         let strut = robot.drive().strut()?;
-        // Lever, lag and torque, each from the least to the greatest.
+        // The least and the greatest lever, lag and torque.
         let mut ranges = [[f64::INFINITY, 0.0]; 3];
         for gait in robot.gaits() {
             for (_, phase) in gait.frames() {

@@ -1,7 +1,7 @@
-//! The calibration of one robot's servos: what `save` stores, as the console prints and takes it, and as a file.
+//! The calibration of one robot, which `save` stores: as lines of the console, and as a file.
 //!
-//! Two robots of one robot.toml differ in the teeth on which the horns sit and in the servos themselves. The program and the
-//! page measure that and keep it; the rules of both are here.
+//! Two robots built from one robot.toml differ in the teeth on which the horns sit and in the servos themselves. The host
+//! program and the page measure these differences and store them; the rules for both are here.
 
 use std::collections::VecDeque;
 
@@ -18,7 +18,7 @@ const HEAD: &str = "\
 # Angles in degrees; trim and limit as the console has them, scale in us per degree.
 
 ";
-/// Half of the last digit that the console prints, and a little less.
+/// Tolerance for equal numbers: slightly less than half of the last digit that the console prints, 0.01.
 const NEAR: f64 = 0.0049;
 
 /// The settings of a robot.
@@ -37,13 +37,13 @@ pub struct Calibration {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ServoSettings {
-    /// The counter-clockwise turn that the horn needs, deg.
+    /// Correction of the horn's angle, deg, counter-clockwise positive.
     pub trim: f64,
     /// Ends of the travel, deg, chassis frame.
     pub limit: [f64; 2],
     /// The direction in which a longer pulse turns the servo: `+` for counter-clockwise, or `-`.
     pub dir: char,
-    /// Pulse for a degree, us.
+    /// Change of the pulse's width per degree, us.
     pub scale: f64,
 }
 
@@ -122,7 +122,7 @@ impl ServoSettings {
 }
 
 impl Calibration {
-    /// Reads the lines of `cal`; other `#` lines among them are skipped. `None` if one is missing.
+    /// Reads the answer to `cal`; skips other lines. `None` if a setting is missing or cannot be read.
     #[must_use]
     pub fn of_lines(lines: &[String]) -> Option<Self> {
         let after = |word: &str| {
@@ -143,7 +143,7 @@ impl Calibration {
         })
     }
 
-    /// The console's lines that set everything.
+    /// The console's lines that set all these settings.
     #[must_use]
     pub fn lines(&self) -> Vec<String> {
         let servos = self.servos.iter().zip(1..).flat_map(|(servo, n)| {
@@ -249,7 +249,7 @@ impl Calibration {
 #[derive(Clone, Debug)]
 pub struct Transfer {
     all: Vec<String>,
-    /// The lines of this round that were not sent yet.
+    /// The lines of this round that have not been sent yet.
     left: VecDeque<String>,
     last: String,
     refused: Vec<String>,
@@ -259,7 +259,7 @@ pub struct Transfer {
 }
 
 impl Transfer {
-    /// Makes a transfer; no line was sent yet.
+    /// Makes a transfer that has sent no line yet.
     #[must_use]
     pub fn new(calibration: &Calibration) -> Self {
         let all = calibration.lines();
@@ -273,7 +273,7 @@ impl Transfer {
         }
     }
 
-    /// The next line to send; `None` if all are sent, or those that are left are refused again.
+    /// The next line to send; `None` if no line is left, or if a round from robot.toml's settings has brought no progress.
     pub fn next_line(&mut self) -> Option<String> {
         if self.left.is_empty() && !self.refused.is_empty() {
             if self.refused.len() < self.round {
@@ -290,26 +290,26 @@ impl Transfer {
         Some(self.last.clone())
     }
 
-    /// Notes that the robot has refused the last line; returns true if it is the first one in its round.
+    /// Notes that the robot has refused the last line; returns true if that is the first refusal in its round.
     pub fn refuse(&mut self) -> bool {
         self.refused.push(std::mem::take(&mut self.last));
         self.refused.len() == 1
     }
 
-    /// True if the robot has accepted all lines.
+    /// True if all lines are sent and none of them is still refused.
     #[must_use]
     pub fn is_done(&self) -> bool {
         self.left.is_empty() && self.refused.is_empty()
     }
 }
 
-/// True if a text may be the name of a gait, which is sent to the robot unchanged.
+/// True if a text has the form of a gait's name and may be sent to the robot unchanged.
 fn is_name(text: &str) -> bool {
     let letters = |c: char| c.is_ascii_alphanumeric() || c == ' ' || c == '-' || c == '_';
     !text.is_empty() && text.len() <= 48 && text.chars().all(letters)
 }
 
-/// Refuses a number that the console could not take: it has hundredths.
+/// Returns a number with at most two decimals, and refuses any other: the console takes no more.
 fn has_two_decimals(section: &Section, key: &str, value: f64) -> Checked<f64> {
     match (value * 100.0 - (value * 100.0).round()).abs() < 1e-6 {
         true => Ok(value),

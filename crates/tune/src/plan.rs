@@ -1,22 +1,22 @@
-//! The parameters of the search, numbers from 0 to 1, and the gaits that they mean.
+//! The parameters of the search, numbers from 0 to 1, and the gaits that they describe.
 //!
 //! A straight gait is symmetrical in Hildebrand's sense (*Symmetrical gaits of horses*,
-//! Science 150, 1965): each leg moves as its mirror image did half a cycle before, so the
-//! body goes straight. In a turn on the spot the leg diagonally across takes the place of
+//! Science 150, 1965): each leg moves as its mirror image did half a cycle earlier, so the
+//! body goes straight. In a turn on the spot the diagonally opposite leg takes the place of
 //! the mirror image, so the body stays where it is. The remaining parameters of a wave
-//! are its duty, the time from the hind foot to the front foot of one side, and two
+//! are its duty factor, the lag of the front foot behind the hind foot of one side, and two
 //! amplitudes.
 
 use lizard_robot::Bars;
 
 use crate::goal::Goal;
 
-/// The kinds of gait that are searched, and their parameters.
+/// The kinds of gait that the search tries, and their parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// `waveform = "wave"`: duty, lag of the front feet, amplitude, balance of the two pairs.
+    /// `waveform = "wave"`: duty factor, lag of the front feet, amplitude, balance of the two pairs.
     Wave,
-    /// `waveform = "held"`: order of the returns, amplitude, balance.
+    /// `waveform = "held"`: order in which the feet swing, amplitude, balance of the two pairs.
     Held,
 }
 
@@ -24,8 +24,8 @@ impl Kind {
     /// All kinds, in the order of the search.
     pub const ALL: [Self; 2] = [Self::Wave, Self::Held];
 
-    /// The parameters that the search begins with: feet that return one after the other, with the
-    /// widest stroke; for a wave in both sequences that animals use, lateral and diagonal.
+    /// The starting points of the search: feet that swing one after the other, with the widest
+    /// stroke; for a wave in both sequences that animals use, lateral and diagonal.
     pub fn begin(self) -> Vec<Vec<f64>> {
         let share = |duty: f64| (duty - DUTIES.0) / (DUTIES.1 - DUTIES.0);
         match self {
@@ -38,26 +38,26 @@ impl Kind {
     }
 }
 
-/// The smallest amplitude that is tried, deg.
+/// Smallest amplitude of the search, deg.
 const MIN_AMPLITUDE: f64 = 5.0;
-/// Duties that are tried: below one half two feet never out-vote the others.
+/// Range of duty factors: below one half, at most two feet are in stance, which is no majority.
 const DUTIES: (f64, f64) = (0.5, 0.95);
 /// Largest reduction of one pair's amplitude against the other's, as a share.
 const BALANCE: f64 = 0.5;
-/// The longest cycle that robot.toml takes, s.
+/// The longest cycle that robot.toml accepts, s.
 pub const MAX_PERIOD_S: f64 = 60.0;
 
 /// The space of the search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Space {
-    /// Direction in which the gait should lead.
+    /// The goal of the gait: straight or a turn, and its direction.
     pub goal: Goal,
-    /// The largest amplitude that is tried, deg.
+    /// Largest amplitude of the search, deg.
     pub widest: f64,
 }
 
-/// The gait for parameters from 0 to 1, rounded as in the file; its period is still unset. A
-/// parameter out of range counts as the nearest in it.
+/// The gait for parameters from 0 to 1, rounded as in the file, with [`MAX_PERIOD_S`] as its
+/// period for now. Parameters are limited to their range; a missing one counts as 0.
 pub fn planned(kind: Kind, space: Space, name: &str, parameters: &[f64]) -> Bars {
     let Space { goal, widest } = space;
     let at = |i: usize| {
@@ -71,12 +71,12 @@ pub fn planned(kind: Kind, space: Space, name: &str, parameters: &[f64]) -> Bars
     let (duty, start, amplitude) = match kind {
         Kind::Wave => {
             let lag = rounded(at(1), 2) % 1.0;
-            // The hind legs half a cycle apart, and so the front legs, their partners.
+            // Partners are half a cycle apart. Ahead, these are the two hind and the two front legs.
             let [lf, rf] = match goal {
                 Goal::Ahead(_) => [lag, (lag + 0.5) % 1.0],
                 Goal::Turn(_) => [(lag + 0.5) % 1.0, lag],
             };
-            // Across from LH is RF in a turn, so RH belongs to the other pair.
+            // In a turn LH's partner is RF, and LF's partner is RH, which takes the value `rf`.
             let starts = match goal {
                 Goal::Ahead(_) => [lf, rf, 0.5, 0.0],
                 Goal::Turn(_) => [lf, 0.5, rf, 0.0],
@@ -109,7 +109,7 @@ fn rounded(value: f64, digits: i32) -> f64 {
     (value * scale).round() / scale
 }
 
-/// One of the 24 orders of four legs: each leg's turn, in servo order.
+/// Selects one of the 24 orders of four legs by `at`, 0 to 1: each leg's turn, 0 to 3, in servo order.
 fn order_of_turns(at: f64) -> [usize; 4] {
     let mut left = vec![3, 0, 2, 1];
     let mut number = ((at * 24.0) as usize).min(23);

@@ -1,5 +1,5 @@
-//! A hobby servo: a motor that turns towards the angle of its pulse, with the torque and the rate
-//! that it has, and stops when the error is inside its dead band.
+//! A hobby servo: a motor with limited torque and rate that turns towards the angle of its pulse,
+//! and stops when the error is inside the dead band.
 
 use lizard_robot::{Motors, Robot};
 
@@ -12,26 +12,26 @@ use crate::FRAME;
     reason = "a program has a few of them, and copies them"
 )]
 pub enum ServoModel {
-    /// They follow their pulses at once and exactly.
+    /// Servos that follow their pulses at once and exactly.
     Ideal,
-    /// Rate and dead band are limited, whatever the servos carry. A search walks with them
-    /// because they take a fraction of the time.
+    /// Servos with a largest rate and a dead band, whatever their load. A search uses them
+    /// because they take a fraction of the computing time.
     Unloaded(Unloaded),
-    /// The motors have torque, rate and a rotor, and the pads resist.
+    /// Servos with motors of limited torque and rate, with a rotor, loaded by the pads' friction.
     Motors(Motors),
 }
 
 /// The rate and the dead band of a servo without a load.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unloaded {
-    /// Fastest turn, deg/s.
+    /// Largest rate of turn, deg/s.
     pub rate: f64,
     /// Width of the dead band, us: a servo ignores an error of up to half of it.
     pub dead_band: f64,
 }
 
 impl ServoModel {
-    /// An SG-90 without a load: 60 degrees in 0.12 s, 10 us (data sheet).
+    /// An SG-90 without a load: 60 degrees in 0.12 s, dead band 10 us (data sheet).
     pub const SG90: Self = Self::Unloaded(Unloaded {
         rate: 500.0,
         dead_band: 10.0,
@@ -44,7 +44,7 @@ impl ServoModel {
 }
 
 impl Unloaded {
-    /// Computes the sweep (deg) one frame after `from`, with a pulse for `target`;
+    /// Computes the sweep one frame after it was `from`, with a pulse for `target`, all in deg;
     /// `us_per_degree` is the servo's gain.
     pub fn sweep_after_frame(&self, from: f64, target: f64, us_per_degree: f64) -> f64 {
         let idle = self.dead_band / 2.0 / us_per_degree.abs();

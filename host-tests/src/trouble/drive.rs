@@ -1,5 +1,5 @@
-//! A person who drives by radio, with the dialogue of `lizard console`, beside a cable from
-//! which others talk.
+//! A simulated person who drives by radio, with the session logic of `lizard console`, while
+//! others send lines by cable.
 
 use std::time::{Duration, Instant};
 
@@ -13,14 +13,14 @@ use simulated_uno::{Air, Radio, Uno, Wire};
 use super::record::{MS, Record, Span};
 use super::setup;
 
-/// One byte in this many loses its stop bit on the wire.
+/// On average one byte in this many loses its stop bit on the wire.
 const SPOILT: u16 = 300;
 
-/// The senders on the wire to the board.
+/// Indices of the senders on the wire to the board.
 const RADIO: usize = 0;
 const CABLE: usize = 1;
 
-/// A person, a phone, the air, a module, and the wire that it shares with the cable.
+/// A person with a phone, the radio link, its module, and the wire that module and cable share.
 pub struct Drive<'a> {
     robot: &'a Robot,
     radio: Radio,
@@ -29,7 +29,7 @@ pub struct Drive<'a> {
     /// The time of cycle 0.
     start: Instant,
     random: Rng,
-    /// The phone's part of a line.
+    /// Text that the phone has received since its last complete line.
     text: String,
     /// The cycle until which the phone's screen is locked.
     locked: u64,
@@ -37,7 +37,7 @@ pub struct Drive<'a> {
 }
 
 impl<'a> Drive<'a> {
-    /// A person who has just connected.
+    /// Begins a drive with a person who has just connected.
     pub fn new(air: Air, robot: &'a Robot) -> Self {
         let start = Instant::now();
         Self {
@@ -53,7 +53,7 @@ impl<'a> Drive<'a> {
         }
     }
 
-    /// Ends the drive; the module stays where it is.
+    /// Ends the drive: the phone leaves, and the module stays on the wire.
     pub fn leave(&mut self, now: u64) {
         self.has_left = true;
         self.radio.leave(now);
@@ -71,7 +71,7 @@ impl<'a> Drive<'a> {
         let received = self.radio.received_bytes(sent, chip_baud);
         let [to_uno, to_phone] = self.radio.pass(&received, now);
         self.wire.write(RADIO, &to_uno, now);
-        // The wire has already read them at the chip's rate.
+        // The wire samples the bytes at the chip's rate, so they are sent on at this rate.
         uno.set_baud(chip_baud);
         for received in self.wire.receive(now, chip_baud) {
             let is_spoilt = !self.has_left && self.random.u16(..SPOILT) == 0;
@@ -96,7 +96,7 @@ impl<'a> Drive<'a> {
         }
     }
 
-    /// Lets the phone read its lines and the person act.
+    /// Lets the phone read its lines, and the person act at random.
     fn talk(&mut self, now: u64, record: &mut Record) {
         while let Some((line, rest)) = self.text.split_once('\n') {
             self.session.receive(line.trim_end_matches('\r'));
@@ -123,7 +123,7 @@ impl<'a> Drive<'a> {
         }
     }
 
-    /// A line of the person.
+    /// A random line that the person sends.
     fn line(&mut self) -> String {
         let gaits = tour::moving(self.robot);
         let gait = self.random.choice(&gaits).unwrap_or(&"stand");

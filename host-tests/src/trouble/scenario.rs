@@ -1,5 +1,5 @@
-//! Random scenarios: an activity, trouble that begins at a random cycle of it, and questions and
-//! orders afterwards.
+//! Random scenarios: an activity, trouble that begins at a random cycle of it, and then commands
+//! that check the robot.
 
 mod troubles;
 
@@ -24,15 +24,15 @@ pub(super) const NOWHERE: &str = "pose 0 0 0 0";
 /// A random scenario.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario {
-    /// The seed of its random numbers.
+    /// The seed of the scenario's random numbers.
     pub seed: u64,
     /// The scenario's number among those of the seed.
     pub number: u64,
     /// The robot's activity when trouble begins.
     pub activity: Activity,
-    /// True if a boot loader has cleared the chip's record of a reset.
+    /// True if a boot loader clears the chip's record of a reset's cause.
     pub has_boot_loader: bool,
-    /// The steps, in order.
+    /// The steps from power-on, in order.
     pub steps: Vec<Step>,
 }
 
@@ -52,7 +52,7 @@ impl fmt::Display for Scenario {
 }
 
 impl Scenario {
-    /// A seed's scenario of this number.
+    /// Makes the scenario with this number of a seed.
     #[must_use]
     pub fn of(seed: u64, number: u64, robot: &Robot) -> Self {
         let mut rng = Rng::with_seed(seed.wrapping_mul(1_000_003).wrapping_add(number));
@@ -73,12 +73,12 @@ impl Scenario {
     }
 }
 
-/// A scenario that is being written.
+/// A scenario under construction.
 struct Script<'a> {
     rng: &'a mut Rng,
     robot: &'a Robot,
     steps: Vec<Step>,
-    /// True while a person drives by radio, so that answers are not for the cable alone.
+    /// True while a person drives by radio, so that an answer may not be for the cable.
     is_driven: bool,
 }
 
@@ -109,7 +109,7 @@ impl<'a> Script<'a> {
         self.steps.push(Step::Wait(ms * MS));
     }
 
-    /// Waits to a random cycle.
+    /// Waits for a random number of cycles, less than `ms`.
     fn wait_up_to(&mut self, ms: u64) {
         let cycles = self.rng.u64(1..ms * MS);
         self.steps.push(Step::Wait(cycles));
@@ -259,7 +259,7 @@ impl<'a> Script<'a> {
         self.wait_up_to(2_000);
     }
 
-    /// Presses an input for a random time, which may be too short to count or last to the end.
+    /// Presses an input for a random time: perhaps too short to count, perhaps to the end.
     fn press(&mut self) {
         let inputs: Vec<(&str, u8)> = self.robot.inputs().each().collect();
         let Some((_, pin)) = self.rng.choice(&inputs).copied() else {
@@ -272,7 +272,7 @@ impl<'a> Script<'a> {
         }
     }
 
-    /// Lets a person drive by radio, perhaps after noise at a module without a phone.
+    /// Lets a person drive by radio, perhaps after noise like that of a module without a phone.
     fn start_drive(&mut self) {
         if self.rng.u8(0..4) == 0 {
             self.add_noise();
@@ -290,7 +290,7 @@ impl<'a> Script<'a> {
         self.drive_on();
     }
 
-    /// Lets the person drive on, while others talk by the cable.
+    /// Lets the person drive on, while others send lines by the cable.
     fn drive_on(&mut self) {
         for _ in 0..self.rng.u8(1..4) {
             self.wait_up_to(3_000);
@@ -321,7 +321,7 @@ impl<'a> Script<'a> {
         }
     }
 
-    /// Adds noise on the line, until a computer opens the port, which resets the board.
+    /// Adds noise on the serial line, until a computer opens the port, which resets the board.
     fn add_noise(&mut self) {
         let cycles = self.rng.u64(MS..3_000 * MS);
         self.steps.push(Step::Noise(cycles));
@@ -330,16 +330,17 @@ impl<'a> Script<'a> {
         self.wait(600);
     }
 
-    /// Waits, asks for the status, orders, and asks again.
+    /// Waits, asks for the status, then sends a line that is refused, `walk`, `rest` and `stand`,
+    /// and asks again after each.
     fn add_aftermath(&mut self) {
-        // The LED's pattern of a fault, and `boot`, take some seconds.
+        // In one case of four, long enough for the LED's fault pattern and for `boot`.
         let linger = if self.rng.u8(0..4) == 0 {
             5_500
         } else {
             self.rng.u64(350..800)
         };
         self.wait(linger);
-        // Ends the rest of a line that a reset, or the end of a link, has cut off, and spoils it.
+        // Ends a line that a reset or the end of a link has cut off, and makes it invalid.
         self.send("!");
         self.wait(150);
         self.steps.push(Step::Find);
@@ -348,7 +349,7 @@ impl<'a> Script<'a> {
         let refused = *self.rng.choice(&refused).unwrap_or(&"nonsense");
         self.say(refused);
         self.say("status");
-        // A supply that has recovered is good after a second.
+        // A supply that has recovered counts as good only after a second.
         if self
             .steps
             .iter()

@@ -1,4 +1,4 @@
-//! The steps of a scenario, in words.
+//! The steps of a scenario, and their descriptions in words.
 
 use std::fmt;
 
@@ -7,15 +7,15 @@ use simulated_uno::{Air, CYCLES_PER_MS, CYCLES_PER_US};
 /// One step of a scenario.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Step {
-    /// Sends a line and waits for its answer, for some time.
+    /// Sends a line and waits for its answer, up to a timeout.
     Say(String),
     /// Sends a line without waiting for its answer.
     Send(String),
-    /// Sends `walk`, or `stand` if `walk` is refused because the servos rest.
+    /// Sends a line; if it is refused because the servos rest, sends `stand`.
     Order(String),
     /// Lets this many cycles pass.
     Wait(u64),
-    /// Stalls main for this many cycles, or until a reset.
+    /// Stalls the main loop for this many cycles, or until a reset.
     Stall(u64),
     /// Blocks interrupts for this many cycles.
     Hold(u64),
@@ -25,18 +25,19 @@ pub enum Step {
     PowerCycle,
     /// Sets the supply, mV.
     Supply(u16),
-    /// If true, makes the supply fall to 2.4 V whenever three servos have pulses; if false, no
-    /// longer.
+    /// True connects a weak supply, which falls to 2.4 V whenever three servos have pulses; false
+    /// connects a good one.
     Weak(bool),
-    /// A person begins to drive by radio, beside whom lines are sent by the cable.
+    /// Lets a person begin to drive by radio. The scenario's own lines go over the cable.
     Drive(Air),
-    /// That person goes away with the phone.
+    /// Lets that person go away with the phone, which ends the drive.
     Leave,
-    /// Closes the contact at this pin, by its Arduino number, if true; opens it if false.
+    /// Closes the contact at the pin with this Arduino number if true; opens it if false.
     Contact(u8, bool),
-    /// Asks for the status until the robot, whose serial line may have another rate, answers.
+    /// Sends `status` several times, until the robot answers: its serial line may have another
+    /// baud rate.
     Find,
-    /// Puts noise on the serial line for this many cycles.
+    /// Sends random bytes on the serial line, as many as fit in this many cycles at most.
     Noise(u64),
 }
 
@@ -75,7 +76,7 @@ impl fmt::Display for Step {
     }
 }
 
-/// A number of cycles, printed for people, and exactly.
+/// A number of cycles, printed as a time, with the exact cycles unless it is a whole number of ms.
 pub struct Time(pub u64);
 
 impl fmt::Display for Time {

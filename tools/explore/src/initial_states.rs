@@ -1,4 +1,4 @@
-//! The initial states of a search: memories of every kind, and robots that already do something.
+//! The initial states of a search: every kind of EEPROM contents, each with several activities.
 
 use lizard_core::memory::copies::COPIES;
 use lizard_core::memory::record::Progress;
@@ -12,17 +12,17 @@ use lizard_core::virtual_board::Eeprom;
 use crate::action::Action::{self, Frames, LosePower, Reset, Say, Stall, Supply};
 use crate::world::World;
 
-/// An initial state and its origin.
+/// An initial state, and the actions that lead to it.
 pub struct InitialState {
-    /// The special condition at power-on.
+    /// The EEPROM contents and the boot loader at power-on, in words.
     pub with: &'static str,
-    /// The actions since then.
+    /// The actions since power-on.
     pub actions: Vec<Action>,
     /// The initial state itself.
     pub world: World,
 }
 
-/// Memories, each with the actions of a standing robot that wrote it.
+/// EEPROM contents, each with the actions of a standing robot that write them.
 const MEMORIES: [(&str, &[Action]); 5] = [
     ("a blank memory", &[]),
     (
@@ -72,17 +72,17 @@ const MEMORIES: [(&str, &[Action]); 5] = [
     ),
 ];
 
-/// A power-on with a boot loader, which hides the cause of the reset.
+/// The name of a power-on with a boot loader, which hides the cause of each reset.
 const WITH_BOOT_LOADER: &str = "a boot loader and a blank memory";
 
-/// The robot's actions before the search begins.
+/// The robot's actions between power-on and the start of the search.
 const ACTIVITIES: [&[Action]; 11] = [
     &[],
     &[Frames(160)],
     &[Frames(160), Say("walk"), Frames(25)],
     &[Frames(160), Say("round"), Frames(25)],
     &[Frames(160), Say("patrol"), Frames(5)],
-    // The guard holds it.
+    // The guard holds the robot: this gait leaves the safe poses.
     &[Frames(160), Say("stray"), Frames(160)],
     &[Frames(160), Say("rest"), Frames(25)],
     &[Frames(160), Say("trim 1 8"), Frames(25)],
@@ -96,7 +96,7 @@ const ACTIVITIES: [&[Action]; 11] = [
     &[Frames(25), Stall(240), Frames(5)],
 ];
 
-/// A valid record whose travel is too short for the gaits.
+/// An EEPROM with valid settings that leave servo A3 too little travel for the gaits.
 fn cut_off(robot: &Robot) -> Eeprom {
     let mut settings = Settings::of(robot);
     let mut set = settings.servo(Servo::ALL[2]);
@@ -117,7 +117,7 @@ pub fn all(robot: Robot<'static>) -> Vec<InitialState> {
         .iter()
         .map(|(name, actions)| {
             let mut world = World::power_on(robot, Eeprom::blank());
-            // Rules may be broken here; the search reports that, too.
+            // A broken rule is ignored here: the search reports it, too.
             _ = world.apply(Frames(160));
             for action in *actions {
                 _ = world.apply(*action);

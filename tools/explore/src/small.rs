@@ -9,24 +9,24 @@ use lizard_core::numbers::slew::Slew;
 use lizard_core::numbers::units::Sweep;
 use lizard_robot::flash;
 
-/// A third of the paper's speed, 1/65536 turn in a frame: a servo whose first pulse is not
-/// the one for its position leaps by more than that.
+/// The slew limit, 1/65536 turn in a frame, a third of the paper's: a servo that starts with
+/// a pulse for another position jumps by more than that.
 const PER_FRAME: u16 = 364;
 
-/// The travel that every gait stays within.
+/// The declared travel to either side of neutral, 1/65536 turn; only `stray` exceeds it.
 const NEED: i16 = 1_000;
 
-/// Arduino numbers of the contacts' pins, A1 and A2.
+/// Arduino number of the button's pin, A1.
 pub const BUTTON: u8 = 15;
-/// See [`BUTTON`].
+/// Arduino number of the pin of the nose contact, A2.
 pub const NOSE: u8 = 16;
 
 /// The paper's robot with `stand`, `walk`, `trot` and `stray`, which leaves safe ground, and
-/// two routines without an end: `round` walks and stands, `patrol` waits for a button, walks up to a
+/// two endless routines: `round` walks and stands, `patrol` waits for a button, walks up to a
 /// wall, and turns away.
 ///
 /// # Panics
-/// If robots/paper.toml is not a robot.
+/// If robots/paper.toml is not valid.
 pub fn small() -> Robot<'static> {
     let text = include_str!("../../../robots/paper.toml");
     let paper = lizard_robot::Robot::parse(text).expect("robots/paper.toml is right");
@@ -98,7 +98,7 @@ fn add(to: &mut Content, name: &str, increment: i32, wave: u16, gains: [i16; 4])
     to.names.extend(name.bytes());
 }
 
-/// Adds a routine without an end.
+/// Adds an endless routine.
 fn add_routine(to: &mut Content, name: &str, steps: &[(u8, u8, u16)]) {
     to.gaits.push(Gait {
         name_start: to.names.len() as u16,

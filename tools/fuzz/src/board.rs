@@ -1,4 +1,5 @@
-//! The core on a board whose time is a call: an observer judges each byte and each frame.
+//! The core on a virtual board, whose time passes by calls only. An observer judges each byte and
+//! each frame.
 
 use lizard_core::console::command::{effect, parse};
 use lizard_core::console::word::Effect;
@@ -10,14 +11,14 @@ use lizard_core::virtual_board::{Eeprom, Running};
 use lizard_robot::Robot;
 use lizard_rules::{Event, Limits, MS, Observer, Rule, Time};
 
-/// The core on a board whose time is a call.
+/// A virtual board with the core on it; time passes only in [`Board::frame`].
 pub struct Board {
     robot: &'static Robot,
     running: Running,
     observer: Observer,
     now: Time,
     output: String,
-    /// The line so far, by an independent reader of lines.
+    /// The line so far, collected independently of the core.
     line: Vec<u8>,
     is_overlong: bool,
 }
@@ -48,7 +49,7 @@ impl Board {
             is_overlong: false,
         };
         board.observe(Event::Start(Cause::Power));
-        // Until the supplies have been measured, a `save` waits.
+        // A `save` waits until the supplies have been measured.
         for _ in 0..30 {
             board.frame();
         }
@@ -125,7 +126,7 @@ impl Board {
         self.assert_rules_hold();
     }
 
-    /// Tells the observer of the answer to a line.
+    /// Passes the answer to a line on to the observer.
     fn observe_answer(&mut self, line: &str) {
         assert!(
             !self.observer.has_unanswered_lines(),
@@ -153,7 +154,7 @@ impl Board {
         self.output = output;
     }
 
-    /// Lets a frame pass.
+    /// Runs the robot for one frame, 20 ms.
     ///
     /// # Panics
     /// If its pulses break a rule.
@@ -169,7 +170,7 @@ impl Board {
     /// Checks that the memory holds complete settings or none, and a complete pose or none.
     ///
     /// # Panics
-    /// If not.
+    /// If it does not.
     pub fn assert_memory_is_right(&self) {
         let rule = Rule::Memory.sentence();
         let robot = self.robot.firmware();

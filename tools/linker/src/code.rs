@@ -3,7 +3,7 @@
 use crate::edit::Reference;
 use crate::instruction::{is_relative, is_two_words};
 
-/// An instruction and its offset.
+/// The first word of an instruction, and its offset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PlacedInstruction {
     /// Bytes from the beginning of the code.
@@ -49,7 +49,7 @@ impl Code {
         is_valid.then_some(code)
     }
 
-    /// The reference of the instruction at an offset.
+    /// The reference of the instruction at an offset, in bytes; `None` if it has none.
     pub fn reference(&self, offset: u64) -> Option<&Reference> {
         self.references
             .iter()
@@ -61,7 +61,7 @@ impl Code {
         self.instructions[index..].iter().map(|at| at.code)
     }
 
-    /// The offset of the instruction of an index, or of the end of the code.
+    /// The offset in bytes of the instruction with this index; the end of the code beyond the last.
     pub fn offset(&self, index: usize) -> u64 {
         self.instructions
             .get(index)

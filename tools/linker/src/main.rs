@@ -1,6 +1,6 @@
-//! `lizard-linker ARGUMENTS` shortens the objects among the arguments, then calls avr-gcc
-//! with these arguments. rustc calls it because .cargo/config.toml names scripts/link as
-//! the linker.
+//! `lizard-linker ARGUMENTS` shortens the object files among the arguments, then calls
+//! avr-gcc with the new files in their place. rustc calls it because .cargo/config.toml
+//! names scripts/link as the linker.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -32,7 +32,7 @@ fn run() -> Result<ExitCode, String> {
     }
     let status = Command::new("avr-gcc").args(arguments).status();
     for path in written {
-        // A file that stays does no harm.
+        // A temporary file that is left behind does no harm.
         let _ = fs::remove_file(path);
     }
     let status = status.map_err(|error| format!("avr-gcc, which links the firmware: {error}"))?;
@@ -43,8 +43,8 @@ fn run() -> Result<ExitCode, String> {
     })
 }
 
-/// Writes the shorter form of an object next to it, and the routines that it calls; returns the
-/// names of both. `None` for an argument that is not an object.
+/// Writes the routines that a shortened object calls, and that object, next to the original.
+/// Returns the paths of both in this order; `None` for an argument that is not an object.
 fn write_shortened(path: &Path) -> Result<Option<[PathBuf; 2]>, String> {
     // If a file cannot be read, avr-gcc reports that.
     let (true, Ok(file)) = (path.extension() == Some(OsStr::new("o")), fs::read(path)) else {

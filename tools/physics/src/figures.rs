@@ -1,4 +1,4 @@
-//! The figures of the model and of MuJoCo from their last run.
+//! Displacements that the contact model and MuJoCo gave in their last run.
 
 use std::collections::BTreeMap;
 
@@ -7,12 +7,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::case::{Case, Feet};
 
-/// The displacement by a cycle: mm forward, mm to the left, deg counter-clockwise; in hundredths.
+/// The displacement by a cycle: mm forward, mm to the left, deg counter-clockwise; two decimals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Displacement(pub [f64; 3]);
 
 impl Displacement {
-    /// The difference from another displacement: mm and deg.
+    /// The distance to another displacement, mm, and the difference of the turns, deg.
     pub fn distance_to(&self, other: &Self) -> (f64, f64) {
         let [a, b] = [self.0, other.0];
         ((a[0] - b[0]).hypot(a[1] - b[1]), (a[2] - b[2]).abs())
@@ -21,7 +21,7 @@ impl Displacement {
 
 impl From<[f64; 3]> for Displacement {
     fn from(displacement: [f64; 3]) -> Self {
-        // The sum with 0 has no negative zero.
+        // Adding 0 turns -0 into 0.
         Self(displacement.map(|part| (100.0 * part).round() / 100.0 + 0.0))
     }
 }
@@ -32,24 +32,24 @@ impl From<Travel> for Displacement {
     }
 }
 
-/// The answers of the model and of MuJoCo for a cycle.
+/// The displacements by a cycle, as the contact model and MuJoCo compute them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Answers {
-    /// The contact model's; `None` where two feet pull against two, so that the smallest
-    /// difference between the pads decides.
+    /// The contact model's; `None` where two feet pull against the other two, so that the
+    /// smallest difference between the pads decides.
     pub model: Option<Displacement>,
     /// MuJoCo's, for the robot as `lizard model` writes it.
     pub mujoco: Displacement,
 }
 
-/// The allowed difference between MuJoCo and the model, in mm, as a share of the distance, and in
-/// deg: with level feet; with one foot too long on soft leaves; and on stiff
-/// leaves, where a few hundredths of a mm decide which feet hold.
+/// Allowed differences between MuJoCo and the model: mm or, if more, a share of the distance; and
+/// deg. `LEVEL` is for level feet, the others for one foot too long: `SOFT` on soft leaves, `STIFF`
+/// on stiff ones, where a few hundredths of a mm decide which feet hold.
 const LEVEL: (f64, f64, f64) = (1.5, 0.08, 1.0);
 const SOFT: (f64, f64, f64) = (2.5, 0.08, 1.5);
 const STIFF: (f64, f64, f64) = (5.0, 0.35, 4.0);
-/// A gait that moves less than this by the model, mm and deg, may creep by `CREEPS` mm: it moves
-/// nearly equally fast in both directions, so that inertia decides.
+/// If a gait moves less than this in the model, mm and deg, MuJoCo may differ by `CREEPS` mm: it
+/// moves nearly equally fast in both directions, so that inertia decides.
 const NOWHERE: (f64, f64) = (1.0, 0.5);
 const CREEPS: f64 = 3.5;
 
@@ -69,7 +69,7 @@ impl Answers {
         }
     }
 
-    /// The message for a difference beyond the allowed one.
+    /// The message for a difference beyond the allowed one; `None` if there is none.
     pub fn disagreement(&self, case: Case) -> Option<String> {
         let (error, turned) = self.mujoco.distance_to(&self.model?);
         let (mm, deg) = self.bound(case);
@@ -98,7 +98,7 @@ impl Figures {
     /// The text of `figures.json`: a line for each walk.
     ///
     /// # Panics
-    /// Never: they are names and numbers.
+    /// Never: names and numbers can always be written as JSON.
     pub fn text(&self) -> String {
         let block = |lines: Vec<String>| format!("{{\n{}\n}}", lines.join(",\n"));
         let robots = self.0.iter().map(|(robot, gaits)| {

@@ -1,4 +1,4 @@
-//! Pads of other shapes: a comparison of domes on edges.
+//! Comparison of pad shapes, flat and domed, that walk over edges and blocks.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -8,7 +8,7 @@ use lizard_parts::{Assembly, Pads, Scene};
 use crate::figures::Displacement;
 use crate::surface::Surface;
 
-/// The gait that is walked.
+/// The gait of the comparison.
 pub const GAIT: &str = "walk";
 /// The surfaces of the table.
 pub const SURFACES: [Surface; 4] = [
@@ -18,7 +18,7 @@ pub const SURFACES: [Surface; 4] = [
     Surface::Blocks(10),
 ];
 
-/// A pad of the table.
+/// A pad shape, one row of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
     /// A flat disc, 8 mm wide.
@@ -47,7 +47,7 @@ impl Shape {
         }
     }
 
-    /// The walk on a surface; `level` is the gait's displacement on a level floor.
+    /// The scene of a walk; `level` is the gait's displacement on a level floor.
     pub fn scene(
         self,
         name: &str,
@@ -75,7 +75,7 @@ pub fn stored() -> Shapes {
     serde_json::from_str(include_str!("../pads.json")).expect("pads.json")
 }
 
-/// The table, as Markdown, mm a cycle; a dash where a walk is missing.
+/// The table in Markdown, mm forward per cycle; a dash where a walk is missing.
 pub fn table(shapes: &Shapes) -> String {
     let heads = SURFACES.map(|surface| format!(" {surface} |")).concat();
     let mut text = format!(
@@ -86,7 +86,7 @@ pub fn table(shapes: &Shapes) -> String {
         let of = shapes.get(&shape.name());
         let cells = SURFACES.map(|surface| {
             let displacement = of.and_then(|of| of.get(&surface.to_string()));
-            // Adding positive zero turns a negative one positive.
+            // Adding 0 turns -0 into 0.
             let ahead = displacement.map(|of| of.0[0].round() + 0.0);
             ahead.map_or(" - |".to_owned(), |ahead| format!(" {ahead} |"))
         });

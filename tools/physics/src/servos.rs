@@ -1,5 +1,5 @@
-//! Servos that cannot follow their pulses: the model with motors, and MuJoCo with the motors of
-//! `lizard model`. Neither has a dead band here.
+//! Gaits with servos that lag behind their pulses: the contact model with motors, compared with
+//! MuJoCo and the motors that `lizard model` writes. Neither has a dead band here.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -10,8 +10,8 @@ use lizard_robot::Robot;
 use crate::figures::{Answers, Displacement};
 use crate::here;
 
-/// The gaits that are walked, and the part of the displacement that matters for each: 0 ahead, 2
-/// turn.
+/// The gaits, and the index of the part of the displacement that is compared: 0 for the distance
+/// forward, 2 for the turn.
 pub const GAITS: [(&str, usize); 4] = [("walk", 0), ("trot", 0), ("crawl", 0), ("left", 2)];
 /// The allowed difference between the model and MuJoCo, as a share of MuJoCo's displacement.
 const ALLOWED: f64 = 0.10;
@@ -21,7 +21,7 @@ const ALLOWED: f64 = 0.10;
 pub struct Variant {
     /// The variant's name in the table.
     pub name: &'static str,
-    /// Keys of `[servo]` and of `[joints]`.
+    /// Lines for the tables `[servo]` and, in `joints`, `[joints]` of robot.toml.
     servo: &'static str,
     joints: &'static str,
     /// Friction of each pin of MuJoCo's robot, N mm, instead of the model's `drag`.
@@ -29,7 +29,7 @@ pub struct Variant {
     /// Additional mass, g.
     extra_mass: f64,
     friction: f64,
-    /// Gaits that differ more, with the share that is allowed instead.
+    /// Gaits that may differ by more than [`ALLOWED`], with the share that is allowed instead.
     exceptions: &'static [(&'static str, f64)],
 }
 
@@ -64,14 +64,14 @@ impl Variant {
         Self {
             name: "the same, but 3 N mm in each pin of MuJoCo's robot",
             pins: Some(3.0),
-            // The pins of head and tail turn if a leg returns alone; without them it is 6 %.
+            // The pins of head and tail turn if one leg swings alone; without them it is 6 %.
             exceptions: &[("crawl", 0.17)],
             ..STIFF
         },
         Self {
             name: "the same copy on 4.2 V",
             servo: "model = \"copy\"\nvolts = 4.2",
-            // So near a stall, details of the robot decide that change MuJoCo's walk by a tenth.
+            // This near to a stall, small details of the robot change MuJoCo's walk by a tenth.
             exceptions: &[("walk", 0.21), ("left", 0.12)],
             ..STIFF
         },
@@ -87,7 +87,7 @@ impl Variant {
         },
     ];
 
-    /// The robot.
+    /// Makes the robot of this variant.
     ///
     /// # Panics
     /// If robots/paper.toml does not have the lines that are replaced.
@@ -117,7 +117,7 @@ impl Variant {
         Robot::parse(&text).expect(self.name)
     }
 
-    /// MuJoCo's second cycle of a gait of [`Variant::robot`].
+    /// MuJoCo's scene of two cycles of a gait, of which the second is measured.
     ///
     /// # Panics
     /// If the robot has no such gait.
@@ -135,7 +135,7 @@ impl Variant {
         scene
     }
 
-    /// The model's second cycle of a gait.
+    /// The displacement of a gait's second cycle by the contact model.
     ///
     /// # Panics
     /// If the robot has no such gait.
@@ -175,10 +175,10 @@ pub fn stored() -> Servos {
     serde_json::from_str(include_str!("../servos.json")).expect("servos.json")
 }
 
-/// The text of `servos.json`: a line for each walk.
+/// The text of `servos.json`: a line for each gait of a variant.
 ///
 /// # Panics
-/// Never: they are names and numbers.
+/// Never: names and numbers can always be serialized.
 pub fn text(servos: &Servos) -> String {
     let variants = servos.iter().map(|(variant, gaits)| {
         let lines = gaits.iter().map(|(gait, answers)| {
@@ -195,7 +195,7 @@ pub fn text(servos: &Servos) -> String {
     format!("{{\n{}\n}}\n", variants.collect::<Vec<_>>().join(",\n"))
 }
 
-/// The table of all variants, as Markdown; a dash where a walk is missing.
+/// The table of all variants, as Markdown; a dash where an answer is missing.
 pub fn servos_table(servos: &Servos) -> String {
     let heads = GAITS.map(|(gait, part)| {
         let unit = if part == 2 { "deg" } else { "mm" };

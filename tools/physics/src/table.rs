@@ -7,10 +7,10 @@ use lizard_robot::Robot;
 use crate::case::{Case, Feet, Legs};
 use crate::figures::{Displacement, Figures};
 
-/// A displacement below this counts as none: mm and deg.
+/// A displacement by a cycle up to this counts as none: mm ahead, and deg of turn.
 const MIN_DISPLACEMENT: (f64, f64) = (1.0, 0.5);
 
-/// The part of a displacement for which a gait is made.
+/// A component of a displacement: the way ahead, or the turn.
 #[derive(Clone, Copy)]
 pub(crate) enum Part {
     Ahead,
@@ -18,7 +18,7 @@ pub(crate) enum Part {
 }
 
 impl Part {
-    /// The parts of a displacement that are not negligible.
+    /// The parts that are not negligible; `Ahead` if both are.
     pub(crate) fn of(displacement: Displacement) -> Vec<Self> {
         let [ahead, _, turn] = displacement.0.map(f64::abs);
         let mut parts = Vec::new();
@@ -111,9 +111,9 @@ fn gaits(robot: &Robot) -> impl Iterator<Item = &str> {
     moving.map(|gait| gait.name())
 }
 
-/// The displacement by a cycle of each gait, as Markdown: the model's prediction for level feet
-/// with ideal servos and with the robot's, MuJoCo's answer, and the range of the first and the last
-/// with a foot 1.0 mm too long.
+/// The displacement per cycle of each gait, as Markdown. For level feet: the model's prediction with
+/// ideal servos and with the robot's, and MuJoCo's result. With a foot 1.0 mm too long: the range
+/// from the model with ideal servos to MuJoCo.
 pub fn spread(name: &str, robot: &Robot, figures: &Figures) -> String {
     let mut text = "| gait | cycle, s | ideal servos | its servos | MuJoCo | ideal servos and MuJoCo, a foot 1.0 mm too long |\n|---|---|---|---|---|---|\n".to_owned();
     for gait in robot.gaits().iter().filter(|gait| gait.moves()) {

@@ -1,4 +1,4 @@
-//! Answers, and the promises that they make.
+//! The robot's answers, and the promises that they make.
 
 use lizard_core::console::word::Effect;
 
@@ -6,13 +6,13 @@ use crate::event::{MS, Time};
 use crate::observer::Observer;
 use crate::rule::Rule;
 
-/// Longest time from an order to the pulses of all four servos.
+/// Longest time from the answer to an order until all four servos have pulses.
 const UNTIL_AWAKE: Time = 600 * MS;
 
-/// Time without a pulse after an answer that promises none.
+/// Time from an answer that promises no pulses to the end of the check for them.
 const QUIET_TIME: Time = 140 * MS;
 
-/// Longest time from `rest` to its pose in the EEPROM: the bytes of a record.
+/// Longest time from `rest` until its pose, a whole record, is in the EEPROM.
 const SAVING_TIME: Time = 400 * MS;
 
 /// Lines that no robot may accept.
@@ -27,7 +27,7 @@ const WRONG: [&str; 7] = [
 ];
 
 impl Observer {
-    /// Judges the answer to a line, and records the promises in it.
+    /// Judges the answer to a line sent at `asked`, and records the promises in it.
     pub(crate) fn answer(&mut self, line: &str, effect: Effect, asked: Time, text: &str) {
         let at = self.now;
         if text.starts_with("ok gait=") {

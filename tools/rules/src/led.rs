@@ -1,9 +1,9 @@
-//! The LED's patterns: as many short flashes as the fault's code, then a pause; without a fault a
-//! slow beat.
+//! The LED's patterns: for a fault, as many short flashes as its code, then a pause; without a
+//! fault, a slow beat.
 
 use crate::event::{MS, Time};
 
-/// The words of `fault=` in `status`, by their code.
+/// The words of `fault=` in `status`; the index is the fault's code.
 const FAULTS: [&str; 8] = [
     "none", "guard", "supply", "link", "watchdog", "late", "stack", "brownout",
 ];
@@ -18,11 +18,11 @@ pub fn code(fault: &str) -> Result<u8, String> {
         .ok_or_else(|| format!("fault={fault} is not known"))
 }
 
-/// Checks that the LED shows nothing but a fault's `code`, 0 for none, in `from..to`.
+/// Checks that the LED shows only the pattern of the fault `code` in `from..to`; 0 is no fault.
 /// `edges` are the LED's changes: a time, and true if it was switched on.
 ///
 /// # Errors
-/// Returns the first part of a pattern that belongs to no fault or to another one.
+/// Returns a message about the first flash, pause or count that does not fit this code.
 pub fn check_pattern(edges: &[(Time, bool)], from: Time, to: Time, code: u8) -> Result<(), String> {
     let mut flashes = None;
     for pair in edges.windows(2) {

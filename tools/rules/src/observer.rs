@@ -9,19 +9,19 @@ use crate::rule::{BrokenRule, Rule};
 use crate::servos::{Permission, Servo};
 use crate::supply::Supply;
 
-/// Numbers of the robot, and the precision with which the test apparatus observes it.
+/// The robot's limits, and the precision with which the test apparatus observes it.
 #[derive(Clone, Debug)]
 pub struct Limits {
-    /// The most cycles that a servo's pulse may change in a frame.
+    /// The largest change of a servo's pulse from one frame to the next, cycles.
     pub leap: [u32; 4],
     /// The shortest and the longest pulse of each servo, cycles.
     pub widths: [(u32, u32); 4],
     /// Levels below which the supply forbids writing, moving and pulses, mV.
     pub levels: [u32; 3],
-    /// The error of the robot's own measurement of the supply, mV: a step of the converter and
-    /// two decimals.
+    /// The largest error of the robot's own measurement of the supply, mV: one step of the
+    /// converter, and the rounding to two decimals.
     pub exact: u32,
-    /// Time from the answer to a line to the end of the current frame.
+    /// The longest time from the answer to a line to the end of the current frame.
     pub frame_left: Time,
     /// The longest time from a fault to its report on the console.
     pub report_time: Time,
@@ -29,13 +29,13 @@ pub struct Limits {
     pub queued: Time,
     /// The longest time for which a routine rests by itself; 0 without such a routine.
     pub longest_rest: Time,
-    /// True if `boot` ends the pulses.
+    /// True if the robot's `boot` setting may be `rest`.
     pub boots_to_rest: bool,
-    /// True if the memory keeps what is written to it.
+    /// True if the EEPROM keeps what is written to it.
     pub keeps_memory: bool,
     /// True if a brown-out may clear RAM.
     pub brown_outs_clear_ram: bool,
-    /// True if the saved travel is narrower than the one in use.
+    /// True if the saved travel may be narrower than the one in use.
     pub is_narrowed: bool,
 }
 
@@ -59,17 +59,17 @@ impl Default for Limits {
     }
 }
 
-/// An observer of a robot.
+/// An observer that judges a robot's events by the rules.
 #[derive(Clone, Debug)]
 pub struct Observer {
-    /// Numbers of the robot.
+    /// The robot's limits.
     pub limits: Limits,
     pub(crate) broken: Vec<BrokenRule>,
     pub(crate) now: Time,
     pub(crate) start: Time,
     pub(crate) cause: Cause,
     pub(crate) cut: Time,
-    /// The end of the last disturbance.
+    /// The end of the last disturbance: a stall of main, or blocked interrupts.
     pub(crate) disturbed: Time,
     pub(crate) stalls: Vec<(Time, Time)>,
     /// Time of the last order that was not refused.
@@ -84,10 +84,10 @@ pub struct Observer {
     pub(crate) deadman: Time,
     /// The latest time at which the last command may have been read.
     pub(crate) command_read: Time,
-    /// True from the answer to a gait until a motion that `deadman` does not end.
+    /// True if the last motion is a gait or a routine, which `deadman` ends.
     pub(crate) is_driven: bool,
     pub(crate) is_unsaved: bool,
-    /// Number of motions since the start that may still be under way.
+    /// Number of motions begun since the start, less the number reported as done.
     pub(crate) begun: i32,
     pub(crate) permission: Permission,
     pub(crate) servos: [Servo; 4],
@@ -101,16 +101,17 @@ pub struct Observer {
     pub(crate) brown_outs: [Time; 5],
 }
 
-/// Promises that are not due yet.
+/// Promises of the robot's answers that are not due yet.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pending {
-    /// The time by which all servos have pulses.
+    /// Start and end of the time in which each servo must get a pulse; true for those that got one.
     pub moves: Option<(Time, Time, [bool; 4])>,
-    /// The time in which no servo has pulses.
+    /// Start and end of a time without any pulse, and the rule that forbids pulses.
     pub quiet: Option<(Time, Time, Rule)>,
-    /// The time by which there are pulses; if not, `status` should have given a reason.
+    /// The time by which there must be a pulse, and the answer to `status` that gave no reason for
+    /// a lack of pulses.
     pub status: Option<(Time, String)>,
-    /// The time until which nothing is written to the memory.
+    /// The time until which no byte of the EEPROM may be written.
     pub unwritten: Option<Time>,
 }
 
@@ -149,7 +150,7 @@ impl Observer {
         }
     }
 
-    /// Observes the pulses of a frame, `widths` of A1 to A4, 0 for none, and its end.
+    /// Observes a frame's pulses and its end; `widths` are those of A1 to A4 in cycles, 0 for none.
     pub fn observe_frame(&mut self, start: Time, widths: [u16; 4]) {
         for (servo, width) in widths
             .into_iter()
@@ -162,16 +163,16 @@ impl Observer {
                 is_cut: false,
                 is_held_up: false,
             };
-            // A1's pulse begins 4 ms after the tick.
+            // A pulse is observed about when it ends; A1's begins 4 ms after the tick.
             self.observe(start + (5 + 4 * servo as Time) * MS, Event::Pulse(pulse));
         }
         self.observe(start + 20 * MS, Event::Pass);
     }
 
-    /// Takes the first rule that was broken since the last call.
+    /// Returns `Ok` if no rule was broken since the last call, and forgets those that were.
     ///
     /// # Errors
-    /// Returns the broken rule.
+    /// Returns the first rule that was broken.
     pub fn verdict(&mut self) -> Result<(), BrokenRule> {
         let mut broken = std::mem::take(&mut self.broken);
         if broken.is_empty() {
@@ -181,7 +182,7 @@ impl Observer {
         }
     }
 
-    /// Takes every broken rule.
+    /// Returns all broken rules since the last call, and forgets them.
     pub fn take_broken(&mut self) -> Vec<BrokenRule> {
         std::mem::take(&mut self.broken)
     }
@@ -195,28 +196,28 @@ impl Observer {
         self.lines > 0
     }
 
-    /// True while nothing allows pulses.
+    /// True while no pulse may begin.
     pub const fn rests(&self) -> bool {
         !self.permission.may
     }
 
-    /// The time since which a fault has stopped the robot.
+    /// The time at which a fault stopped the robot; `None` if none did.
     pub const fn stopped_since(&self) -> Option<Time> {
         self.reports.stopped
     }
 
-    /// True while the console has not reported a stop.
+    /// True from a stop until the console reports it.
     pub const fn is_unreported(&self) -> bool {
         self.reports.stopped.is_some() && !self.reports.is_reported
     }
 
-    /// True if the supply was below a level (0: writing, 1: moving, 2: pulses) within this time.
+    /// True if the supply was below level 0 (writing), 1 (moving) or 2 (pulses) in the last `within`.
     pub fn was_low(&self, level: usize, within: Time) -> bool {
         let mv = self.limits.levels[level];
         self.supply.time_below(mv, self.now - within, self.now + 1) > 0
     }
 
-    /// The time until the last promise is due.
+    /// The time until the last promise is due; `None` if there are no promises.
     pub fn due_in(&self) -> Option<Time> {
         let pending = &self.pending;
         let ends = [
@@ -238,7 +239,7 @@ impl Observer {
         self.now - self.start
     }
 
-    /// True if something outside the robot may have ended the pulses since then.
+    /// True if something outside the robot may have ended the pulses since this time.
     pub(crate) fn is_troubled(&self, since: Time) -> bool {
         let rest = self.limits.levels[2] + self.limits.exact;
         self.start >= since
@@ -332,7 +333,7 @@ impl Observer {
 
     fn program_starts(&mut self, cause: Cause) {
         let at = self.now;
-        // A dip of the supply may be long, and the program hung before it.
+        // A brown-out may last long, and the program may have hung before it.
         let ran_until = if cause == Cause::BrownOut {
             self.cut.max(self.start)
         } else {
@@ -381,8 +382,8 @@ impl Observer {
         let at = self.now;
         if cause == Cause::Watchdog {
             let stalled = self.stalled(at);
-            // The watchdog's first stage, less the frame in which it was fed. That stage
-            // ends the pulses, and then the reset is waited for.
+            // The watchdog's first stage, less the frame in which the watchdog was fed. When
+            // it is over, the pulses end; the reset comes later.
             if stalled < 100 * MS {
                 let ms = stalled / MS;
                 self.fail(Rule::NeedlessReset, format!("stalled for {ms} ms"));

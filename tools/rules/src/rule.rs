@@ -1,4 +1,4 @@
-//! Every rule, in the words of a user.
+//! All rules that the robot must keep, in the words of a user.
 
 use std::fmt;
 
@@ -67,14 +67,14 @@ rules! {
 /// A broken rule.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BrokenRule {
-    /// The rule.
+    /// The rule that is broken.
     pub rule: Rule,
     /// The observation that breaks it.
     pub seen: String,
 }
 
 impl BrokenRule {
-    /// A rule broken by an observation.
+    /// Makes a broken rule from the observation that breaks it.
     pub fn new(rule: Rule, seen: impl Into<String>) -> Self {
         let seen = seen.into();
         Self { rule, seen }

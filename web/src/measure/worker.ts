@@ -1,9 +1,9 @@
-// The worker of the room Measure: tags and paths in WebAssembly, so that the page stays smooth. No picture leaves the machine.
+// The worker of the room Measure: finds tags and paths in WebAssembly, so the page stays responsive. No picture leaves the machine.
 import { expose } from 'comlink';
 
 import { type Asked, Camera, initSync, type TagEntry } from '../../generated/measure';
 
-/** The tags of a picture, the picture's size, and the time that it took, ms. */
+/** The tags of a picture, its size (width and height, px), and the time that the search took, ms. */
 export interface Sight {
   tags: TagEntry[];
   size: [number, number];
@@ -11,14 +11,14 @@ export interface Sight {
 }
 
 let camera: Camera;
-/** The formats of pictures whose brightness is a plane of its own. */
+/** The pixel formats that store brightness in a plane of its own. */
 const PLANES = ['I420', 'I420A', 'I422', 'I444', 'NV12'];
 let planes = new Uint8Array();
 const canvas = new OffscreenCanvas(1, 1);
-// Its pixels are read, so it is none of the graphics chip.
+// The pixels are read back often, so the canvas is kept in memory and not on the graphics chip.
 const pen = canvas.getContext('2d', { willReadFrequently: true });
 
-/** The brightness of each pixel, which a camera or a film has as a plane of its own; null if this picture has none, or is turned. */
+/** The brightness plane of a picture, a byte for each pixel; null if it has no such plane, or is scaled, turned or padded. */
 async function greyOf(picture: VideoFrame): Promise<Uint8Array | null> {
   const { format, visibleRect, displayWidth, displayHeight } = picture;
   const { rotation = 0, flip = false } = picture as { rotation?: number; flip?: boolean };
@@ -38,7 +38,7 @@ function coloursOf(picture: VideoFrame | ImageBitmap, width: number, height: num
   return new Uint8Array(pen.getImageData(0, 0, width, height).data.buffer);
 }
 
-/** The questions so far: the next one waits for them. */
+/** Settles when all earlier calls are done; the next call waits for it. */
 let before: Promise<unknown> = Promise.resolve();
 
 function inTurn<Answer>(act: () => Answer | Promise<Answer>): Promise<Answer> {
@@ -53,7 +53,7 @@ const functions = {
     camera = new Camera();
   },
 
-  /** Finds the tags of a picture that was taken at a time, s; one that is kept belongs to the film. */
+  /** Finds the tags of a picture taken at `seconds`; if `isKept`, the picture is added to the film. */
   look: (picture: VideoFrame | ImageBitmap, seconds: number, isKept: boolean) =>
     inTurn(async (): Promise<Sight> => {
       const begun = performance.now();
@@ -64,17 +64,17 @@ const functions = {
       return { tags: camera.look(width, height, pixels, seconds, isKept), size: [width, height], ms: performance.now() - begun };
     }),
 
-  /** Begins a new film. */
+  /** Discards the film and begins a new one. */
   clear: () =>
     inTurn(() => {
       camera.free();
       camera = new Camera();
     }),
 
-  /** Measures gaits in the film. Throws the reason where the film does not show what is needed. */
+  /** Measures gaits in the film. Throws the reason if the film does not show what is needed. */
   measure: (asked: Asked) => inTurn(() => camera.measure(asked)),
 
-  /** The sheet of tags as PDF, for A4 or for letter paper. */
+  /** The sheet of tags as PDF, for letter paper if `isLetter`, else for A4. */
   sheet: (isLetter: boolean) => Camera.sheet(isLetter) as Uint8Array<ArrayBuffer>,
 };
 

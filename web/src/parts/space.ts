@@ -1,4 +1,4 @@
-// The robot in space, drawn by three.js. This file is a chunk of its own, loaded when asked for.
+// The robot in three dimensions, drawn by three.js. This file is a separate chunk, loaded on demand.
 import {
   AmbientLight,
   BufferAttribute,
@@ -25,18 +25,18 @@ import type { BodyEntry } from '../../generated/parts';
 import type { Model, Solid } from './workshop';
 import { PaintBudget } from './paint-budget';
 
-/** Lift of a body of lift 1 in the exploded view, mm, as in the guide's pictures. */
+/** Height by which a body of lift 1 rises in the fully exploded view, mm, as in the guide's pictures. */
 const LIFT = 45;
-/** Size of a cell of the floor's grid, mm, and their number. */
+/** Size of a cell of the floor's grid, mm, and number of cells to a side. */
 const CELL = 50;
 const CELLS = 16;
-/** Movement below which a press is a click, CSS pixels. */
+/** Movement of the pointer below which a press is a click, CSS pixels. */
 const CLICK = 5;
-/** Turn of the view by a key, rad. */
+/** Turn of the view by one press of a key, rad. */
 const TURN = Math.PI / 24;
-/** Time without a change after which the view stands still, ms. */
+/** Time without a change after which the view counts as still, ms. */
 const STILL = 400;
-/** Share of the floor's colour in bodies of earlier steps, and in all others when one is selected. */
+/** Share of the floor's colour in pale bodies: those of earlier steps, or all but the selected ones. */
 const PALE = 0.65;
 
 /** The view's settings. */
@@ -45,9 +45,9 @@ export interface ViewSettings {
   apart: number;
   /** The step of the guide, from 1; null for the whole robot. */
   step: number | null;
-  /** Index of the selected body. */
+  /** Index of the selected body; null for none. */
   picked: number | null;
-  /** Indices of the two bodies that meet; none if none do. */
+  /** Indices of the two bodies that collide; empty if none do. */
   clash: number[];
 }
 
@@ -67,7 +67,7 @@ export class Space {
   /** Time of the last change, ms. */
   private changed = 0;
 
-  /** Throws if the browser has no WebGL. `onPick` gets the body that was clicked. */
+  /** Throws if the browser has no WebGL. `onPick` gets the index of the body that was clicked, or null. */
   constructor(
     private readonly canvas: HTMLCanvasElement,
     onPick: (body: number | null) => void,
@@ -83,7 +83,7 @@ export class Space {
     this.controls.addEventListener('change', () => (this.dirty = true));
     this.controls.maxDistance = 1500;
     this.controls.minDistance = 60;
-    // One finger across turns the robot; along the page it scrolls, as everywhere else.
+    // A horizontal drag with one finger turns the robot; a vertical one scrolls the page.
     canvas.style.touchAction = 'pan-y';
     this.listen(onPick);
     this.home();
@@ -141,7 +141,7 @@ export class Space {
   /** Resets to the view of the guide: from behind, from the left and from above. */
   home(): void {
     this.controls.target.set(0, -30, 5);
-    // A narrow canvas must show the whole robot, too.
+    // The camera is farther away for a narrow canvas, to show the whole robot.
     const { clientWidth, clientHeight } = this.canvas;
     const far = 500 * Math.max(1, (1.3 * clientHeight) / Math.max(1, clientWidth));
     this.camera.position.copy(new Vector3(-0.62, -0.62, 0.52).normalize().multiplyScalar(far)).add(this.controls.target);
@@ -149,7 +149,7 @@ export class Space {
     this.dirty = true;
   }
 
-  /** Takes another robot's solids. */
+  /** Replaces the robot by another one and its solids. */
   showModel(model: Model, solids: Solid[]): void {
     for (const mount of this.mounts) this.scene.remove(mount);
     for (const mesh of this.meshes) mesh.material.dispose();
@@ -205,7 +205,7 @@ export class Space {
     this.dirty = true;
   }
 
-  /** Places every mount: x, y, cosine and sine each. */
+  /** Places every mount: x and y in mm, and cosine and sine of its angle, four numbers each. */
   pose(places: Float64Array): void {
     this.mounts.forEach((mount, number) => {
       const [x = 0, y = 0, cos = 1, sin = 0] = places.subarray(4 * number, 4 * number + 4);
@@ -220,7 +220,7 @@ export class Space {
     return this.paintBudget.mayPaint();
   }
 
-  /** Draws a picture if something has changed and `mayDraw`. `place` is that of the body on the floor. */
+  /** Draws a picture if something has changed and `mayDraw()` is true. `place` is the robot's place on the floor. */
   draw(place: Place): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (!this.mayDraw() || width === 0 || height === 0) return;
@@ -255,7 +255,7 @@ export class Space {
     this.grid.matrixWorldNeedsUpdate = true;
   }
 
-  /** The body at a point of the canvas, CSS pixels. */
+  /** The index of the foremost body at a point of the canvas, CSS pixels; null if there is none. */
   private at(x: number, y: number): number | null {
     const { clientWidth, clientHeight } = this.canvas;
     const ray = new Raycaster();

@@ -1,5 +1,5 @@
-// A board may have another robot than the page, which would then be drawn and predicted wrongly. So its own robot is looked for and
-// offered.
+// A board may hold another robot than the page shows, so that the page would draw and predict it wrongly. So the board's robot is
+// searched for and offered.
 import { files } from '../files';
 import { kept } from '../kept';
 import { isRefused, Robot } from '../robot';
@@ -7,14 +7,14 @@ import type { Session } from '../session';
 import { nameOf } from './setup/board';
 import type { Troubles } from './troubles';
 
-/** A robot that the page can show: a file of the list, with the user's text if it was changed. */
+/** A robot that the page can show: its file in the list, and its text, which the user may have changed. */
 interface Known {
   file: string;
   toml: string;
 }
 
 export class BoardRobot {
-  /** A separate reader, since reading a robot replaces the reader's previous one. */
+  /** A separate reader, since a reader holds one robot only, and the page's reader must keep its own. */
   private readonly reader = new Robot();
 
   /** `show` loads a robot into the page. */
@@ -36,7 +36,7 @@ export class BoardRobot {
     this.troubles.say('other', has, { label: `Show ${other.name}`, act: () => this.show(known) });
   }
 
-  /** Looks for a robot among the user's own ones and the files of the list. */
+  /** Finds the robot with this hash among those that the user has put aside and the files of the list; null if there is none. */
   private async find(hash: string): Promise<Known | null> {
     const isIt = (toml: string) => {
       const read = this.reader.read(toml);

@@ -1,19 +1,19 @@
-// A button for each gait, with its predicted displacement per cycle and the share of their torque-speed line that its servos
-// use, and one for each routine.
+// A button for each gait and each routine. A gait's button also shows the predicted displacement per cycle, and the share of
+// the servos' torque-speed line that the gait uses.
 import type { Description, GaitPrediction, Displacement } from '../robot';
 import type { Answer } from '../link/dialogue';
 import { WORDS } from '../words';
 import { element } from './canvas';
 import { make } from './make';
 
-/** Letters that fit on a button of the usual width. */
+/** Characters that fit on a button of the usual width. */
 const LONG = 13;
-/** Share of their torque-speed line from which the servos have little left. */
+/** Share of the torque-speed line from which the page warns that the servos have little reserve. */
 const TIGHT = 0.9;
 /** The longest text of a prediction; a button reserves room for it. */
 const LONGEST = '-999.9 mm, -99.9°';
 
-/** A displacement in few letters: mm forward, and deg if it turns. */
+/** A displacement as a short text: mm forward, and degrees if it turns; '' for null. */
 export function short(displacement: Displacement | null): string {
   if (!displacement) return '';
   const parts = [
@@ -53,16 +53,16 @@ export class Drive {
     this.message.textContent = answer.ok ? '' : `${line}: ${answer.text.replace(/^err \d+ /, '')}`;
   }
 
-  /** Takes another robot. */
+  /** Shows the buttons of another robot. */
   showRobot({ gaits, routines }: Description): void {
     this.list.replaceChildren();
-    // The predictions count the gaits, which are the first.
+    // A prediction names its gait by index, so the gaits come first.
     this.buttons = [...gaits, ...routines.map((command) => ({ command, moves: false }))].map(({ command, moves }) => {
       const note = make('span', {});
       const room = make('small', {}, note);
       const line = make('span', { className: 'line', title: 'share of their torque-speed line that its servos use at this pace' });
       if (moves) room.dataset.room = LONGEST;
-      // A long name gets the room of two buttons.
+      // A button with a long name is twice as wide.
       const button = make('button', { type: 'button', ariaPressed: 'false', className: command.length > LONG ? 'long' : '' }, command, room, ...(moves ? [line] : []));
       button.dataset.command = command;
       this.list.append(button);
@@ -72,7 +72,7 @@ export class Drive {
     this.message.hidden = true;
   }
 
-  /** Shows the prediction of a gait; the old one stays until then. */
+  /** Shows a new prediction for the gait with this index. */
   predicted(gait: number, prediction: GaitPrediction): void {
     const entry = this.buttons[gait];
     if (!entry) return;
@@ -81,14 +81,14 @@ export class Drive {
     this.showLine();
   }
 
-  /** Takes the robot's pace, percent. */
+  /** Sets the pace of the robot, percent, for which the shares are shown. */
   speed(percent: number): void {
     if (percent === this.pace) return;
     this.pace = percent;
     this.showLine();
   }
 
-  /** Shows how much each gait asks of the servos at the robot's pace, and, once all are predicted, which asks most. */
+  /** Shows each gait's share of the torque-speed line at the robot's pace, and, once all are predicted, the gait with the largest. */
   private showLine(): void {
     const isKnown = this.buttons.every(({ command, moves }) => !moves || this.predictions.has(command));
     let [hardest, largest] = ['', 0];
@@ -111,7 +111,7 @@ export class Drive {
     return this.predictions.get(command) ?? null;
   }
 
-  /** The gaits with a known prediction. */
+  /** The gaits that have a prediction. */
   choices(): { command: string; displacement: GaitPrediction }[] {
     return this.buttons.flatMap(({ command }) => {
       const displacement = this.predictions.get(command);

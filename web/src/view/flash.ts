@@ -14,7 +14,7 @@ export class FlashView {
   private readonly question = element('flash-question');
   readonly progress = element<HTMLProgressElement>('flash-progress');
   readonly message = element('flash-said');
-  /** The image of the chosen file, until the user decides about it. */
+  /** The chosen file's image until the user confirms or rejects it; else null. */
   private chosen: Uint8Array | null = null;
 
   constructor(
@@ -35,7 +35,7 @@ export class FlashView {
     element('flash-no').addEventListener('click', () => this.forget());
   }
 
-  /** Shows the choices for this board. */
+  /** Shows what can be written over this link; drops a chosen file. */
   update(): void {
     const { link, section, description } = this.session();
     this.forget();
@@ -47,7 +47,7 @@ export class FlashView {
     this.note.textContent = link.kind === 'radio' ? byRadio : byCable;
   }
 
-  /** Scrolls to the panel, and writes the robot, the firmware with it, or an image. */
+  /** Scrolls to the panel and writes the robot, robot and firmware, or an image. */
   write(what: WriteContent): void {
     reveal(this.note);
     this.message.scrollIntoView({ block: 'nearest' });

@@ -7,8 +7,8 @@ export interface Range {
 }
 
 /**
- * Sets an input's range, and calls back with each valid number that is typed, or null when the input is emptied. Leaving
- * the input restores the last valid number.
+ * Sets an input's range, and calls `take` with each valid number that is typed, or with null when the input is emptied.
+ * Leaving the input with an invalid number restores the last valid one.
  */
 export function numberInput(input: HTMLInputElement, { min, max, step }: Range, take: (value: number | null) => void): void {
   Object.assign(input, { type: 'number', min: String(min), max: String(max), step: String(step), title: `from ${min} to ${max}` });
@@ -27,7 +27,7 @@ export function numberInput(input: HTMLInputElement, { min, max, step }: Range, 
   });
 }
 
-/** Shows a number in an input, unless the user is typing there. */
+/** Sets the number of an input; while the user is typing there, the text stays. */
 export function putNumber(input: HTMLInputElement, value: number): void {
   input.defaultValue = String(value);
   if (document.activeElement === input) return;

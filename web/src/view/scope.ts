@@ -55,7 +55,7 @@ export class ScopeView {
     this.widths = [0, 0, 0, 0];
   }
 
-  /** Adds a pulse of a pin, cycles. */
+  /** Adds a pulse of the pin with this Arduino number; `rise` and `width` are in cycles. */
   pulse(pin: number, rise: number, width: number): void {
     const servo = this.pins.indexOf(pin);
     if (servo < 0) return;
@@ -63,12 +63,12 @@ export class ScopeView {
     if (this.pulses.length > 64) this.pulses.splice(0, 32);
   }
 
-  /** Adds the widths of a frame, cycles. */
+  /** Sets the pulse widths of the latest frame, cycles; 0 for no pulse. */
   frame(widths: readonly number[]): void {
     this.widths = [...widths];
   }
 
-  /** Updates the numbers, which costs a layout. */
+  /** Updates the numbers in the table, for which the browser must lay out the page again. */
   write(scene: Scene | null): void {
     if (!isShown(this.panel)) return;
     this.rows.forEach(({ width, angle }, servo) => {

@@ -1,4 +1,4 @@
-// The drawing whose joints can be dragged, and a slider of one length: lengths follow, and invalid ones are refused during the drag.
+// A drawing of the robot whose joints can be dragged, and a slider for one length. Invalid lengths are refused during the drag.
 import { LatestQuestion } from '../latest';
 import type { Edits, Length, Scene, Point } from '../robot';
 import { robotHelper } from '../robot-helper';
@@ -15,7 +15,7 @@ type Question = Parameters<RobotFunctions['lengths']>[0];
 type Answer = ReturnType<RobotFunctions['lengths']>;
 
 const SVG = 'http://www.w3.org/2000/svg';
-/** Movement below which a press is not a drag, screen points. */
+/** Largest movement of a press that is no drag, CSS px. */
 const STILL = 3;
 /** Margin around the robot, mm. */
 const RIM = 14;
@@ -32,7 +32,7 @@ export class Sketch {
   private toml = '';
   /** The dragged joint, as it was at the start of the drag. */
   private dragged: Joint | null = null;
-  /** True from the end of a drag until its last place is answered. */
+  /** True from the end of a drag until its last position is answered. */
   private isEnding = false;
 
   constructor(
@@ -65,13 +65,13 @@ export class Sketch {
     this.sketches?.ask({ toml: this.toml, edits: [], isLast: false, keys: this.slider.keys });
   }
 
-  /** Tries lengths that are being dragged. */
+  /** Tries the lengths of a drag; `isLast` is true at its end. */
   private tryOut(edits: Edits, isLast: boolean): void {
     this.isEnding ||= isLast;
     this.sketches?.ask({ toml: this.toml, edits, isLast, keys: [] });
   }
 
-  /** Searches valid lengths when some are refused, and offers them. */
+  /** Searches for valid lengths in place of refused ones, and offers them. */
   offer(edits: Edits): void {
     this.sketches?.ask({ toml: this.toml, edits, isLast: true, keys: [] });
   }
@@ -84,7 +84,7 @@ export class Sketch {
     if (scene) this.draw(scene, edits.length === 0);
     if (range) this.ranged(range);
     if (edits.length === 0) return;
-    // A number that was refused.
+    // The answer to `offer`: the user typed a number that was refused.
     if (isLast && !this.isEnding) return showOffers({ nearest, without }, this.session());
     if (!isLast) this.fit.follow(refusal ? null : text);
     const { lengths } = this.session().description;
@@ -116,7 +116,7 @@ export class Sketch {
     if (this.slider.isChosen) this.fit.findRange(this.slider.keys, range, (found, message) => this.slider.mark(found, message));
   }
 
-  /** Draws the robot; with `isWhole` also the joints, which stay during a drag. */
+  /** Draws the robot; if `isWhole`, also fits the view to it. During a drag the view stays, and so do the joints' elements. */
   private draw(scene: Scene, isWhole: boolean): void {
     const at = ([x, y]: Point): Point => [x, -y];
     const lengths = this.lengths();
@@ -140,7 +140,7 @@ export class Sketch {
       this.picture.setAttribute('viewBox', `${left} ${top} ${Math.max(...xs) + RIM - left} ${Math.max(...ys) + RIM - top}`);
     }
     if (this.dragged) {
-      // The dragged joint is drawn at its real place, as far as the lengths allow.
+      // The joints are drawn at their real places, so the dragged one may not reach the pointer.
       joints(scene, () => 0).forEach(({ at: spot }, n) => this.place(this.drawnJoints.children[n], at(spot)));
       return;
     }
@@ -191,7 +191,7 @@ export class Sketch {
     this.tryOut(joint.lengthsAt([x, -y], this.symmetric.checked), isLast);
   }
 
-  /** Highlights the number of a clicked bar. */
+  /** Selects the number input for the length of a clicked bar. */
   private point(key: string): void {
     const input = document.querySelector<HTMLInputElement>(`#lengths input[name="${key}"]`);
     input?.focus();

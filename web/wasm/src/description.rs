@@ -19,7 +19,7 @@ use crate::scene::Spot;
 pub struct GaitEntry {
     /// Name of the gait in robot.toml.
     pub name: String,
-    /// Command of the console that begins the gait.
+    /// Console command that starts the gait.
     pub command: String,
     /// Time of a cycle at full speed, s.
     pub period: f64,
@@ -34,7 +34,7 @@ pub struct GaitEntry {
 pub struct LinkEntry {
     /// Key in robot.toml, such as `links.l1`.
     pub key: String,
-    /// Name for people.
+    /// Name shown to the user.
     pub label: &'static str,
     /// Key of the length that mirrors it, or must equal it; it may be its own.
     pub twin: String,
@@ -68,7 +68,7 @@ pub struct ServoEntry {
     pub travel: (f64, f64),
 }
 
-/// The name of the servos of robot.toml, and of servos that follow their pulses exactly.
+/// Names of two models: robot.toml's servos, and servos that follow their pulses exactly.
 const OWN: &str = "own";
 const IDEAL: &str = "ideal";
 
@@ -77,7 +77,7 @@ const IDEAL: &str = "ideal";
 pub struct ModelEntry {
     /// Name of the model.
     pub name: &'static str,
-    /// Stall torque, kg cm, and time for 60 deg, s, both at a supply in V; and their supply in the
+    /// Stall torque, kg cm; time for 60 deg, s; the supply at which both hold, V; the supply in the
     /// robot, V. `None` for ideal servos.
     pub figures: Option<[f64; 4]>,
 }
@@ -104,8 +104,8 @@ impl ModelEntry {
     }
 }
 
-/// The servos of this name on a robot, on their own supply or, as `copy at 4.2`, on another one in V;
-/// `None` for an unknown name, or a supply that robot.toml cannot have.
+/// The servo model of this name for a robot. A name such as `copy at 4.2` sets another supply, V.
+/// `None` for an unknown name, or a supply that robot.toml does not allow.
 pub(crate) fn servo_model(robot: &Robot, name: &str) -> Option<ServoModel> {
     let (name, supply) = match name.split_once(" at ") {
         Some((name, volts)) => (name, Some(volts.parse().ok()?)),
@@ -156,11 +156,11 @@ impl From<Plate> for PlateEntry {
 /// The description of a robot.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Description {
-    /// Hash of the section, as the banner has it.
+    /// Hash of the robot's section in hex, as in the banner.
     pub hash: String,
-    /// Name of the robot, as the banner has it.
+    /// Name of the robot, as in the banner.
     pub name: String,
-    /// Version of the firmware that it is for.
+    /// Version of the firmware that the section is for.
     pub version: String,
     /// Address of its section in flash, bytes.
     pub start: u16,
@@ -169,7 +169,7 @@ pub struct Description {
     pub servos: Vec<ServoEntry>,
     /// The gaits in the order of the file.
     pub gaits: Vec<GaitEntry>,
-    /// Commands of the console that begin a routine, in the order of the file.
+    /// Console commands that start a routine, in the order of the file.
     pub routines: Vec<String>,
     /// The lengths that may be changed.
     pub lengths: Vec<LinkEntry>,
@@ -179,22 +179,22 @@ pub struct Description {
     pub margins: Vec<MarginEntry>,
     /// Least and greatest travel of the sliders, mm from nominal.
     pub stroke: (f64, f64),
-    /// Voltages below which the board slows down, stops and rests.
+    /// Voltages of the board's supply below which it slows down, stops and rests, V.
     pub supply: [f64; 3],
-    /// Percent of their own pace to which the first of them limits gaits.
+    /// Pace limit below the first of these voltages, percent of a gait's own pace.
     pub slow_pace: u8,
-    /// Channel of the converter that measures the servos' rail, and the volts there; `None` if it is
-    /// not measured.
+    /// Analog channel that measures the servos' rail, and the voltage at its pin with a healthy rail,
+    /// V; `None` if the rail is not measured.
     pub rail: Option<(u8, f64)>,
     /// The inputs: name, and Arduino number of the pin.
     pub inputs: Vec<(&'static str, u8)>,
     /// Floor, mass, feet, and the drive of the legs.
     pub floor: Floor,
-    /// The models of a servo.
+    /// The servo models that the page offers.
     pub models: Vec<ModelEntry>,
     /// Frames without motion after which the robot counts as standing.
     pub still: u64,
-    /// Words of the console that mean the same to every robot.
+    /// Reserved words of the console, the same for every robot.
     pub words: Vec<&'static str>,
 }
 
@@ -277,7 +277,7 @@ fn words() -> Vec<&'static str> {
     reserved.map(|word| word.text()).collect()
 }
 
-/// The name of each link, and the number of its mirror image.
+/// The name of each link, l0 to l19, and the number of its mirror image.
 const LINKS: [(&str, usize); 20] = [
     ("head base", 0),
     ("head crank, left", 4),

@@ -1,7 +1,7 @@
-//! Other lengths for a robot and, if they are refused, valid ones instead.
+//! Changed lengths of a robot and, if they are refused, valid alternatives.
 //!
-//! Both offers are tried as a whole robot: the nearest lengths between those of the text and those
-//! wanted, and the lengths wanted without the gait that forbids them.
+//! There are two, each checked as a complete robot: the nearest accepted lengths between those of the
+//! text and those wanted, and the lengths wanted without the gait that forbids them.
 
 use lizard_robot::Robot;
 use lizard_robot::edit::{NoSuchKey, with_number, without_gait};
@@ -11,10 +11,10 @@ use tsify::Tsify;
 use crate::description::Description;
 use crate::refused::Refused;
 
-/// Step of the lengths that are offered, mm.
+/// Step of the lengths that are offered, mm, or deg for an angle.
 const STEP: f64 = 0.5;
 
-/// Lengths by their keys, such as `links.l2`.
+/// Lengths, mm or deg, by their keys, such as `links.l2`.
 type Wanted = [(String, f64)];
 
 /// The text of a robot.toml with other lengths, its refusal, and valid alternatives.
@@ -24,9 +24,9 @@ pub struct Lengths {
     text: String,
     /// The refusal of this text; `None` if it is a robot.
     refusal: Option<Refused>,
-    /// The nearest lengths that are accepted.
+    /// The nearest lengths that are accepted; `None` if not searched or not found.
     nearest: Option<NearestLengths>,
-    /// The lengths wanted on a robot that gives up the gait which forbids them.
+    /// The lengths wanted, without the gait that forbids them; `None` if not searched or no help.
     without: Option<WithoutGait>,
 }
 
@@ -39,17 +39,17 @@ pub struct NearestLengths {
     text: String,
 }
 
-/// A robot.toml that gives up a gait.
+/// A robot.toml without one of its gaits.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct WithoutGait {
-    /// Name of the gait.
+    /// Name of the gait that is left out.
     gait: String,
     /// The text without it.
     text: String,
 }
 
 impl Lengths {
-    /// Sets lengths in the text of a robot.toml; if `searches`, also searches valid alternatives.
+    /// Sets lengths in the text of a robot.toml; if `searches`, also looks for valid alternatives.
     #[must_use]
     pub fn of(text: &str, wanted: &Wanted, searches: bool) -> Self {
         let changed = match with_lengths(text, wanted) {
@@ -88,9 +88,9 @@ impl Lengths {
     }
 }
 
-/// The least and the greatest value that some lengths may have together, as far as a robot walks
-/// with them. The search ends at half and at twice their value, for an angle at an eighth of a turn
-/// to either side.
+/// The least and the greatest value, mm or deg, with which the lengths of all `keys` are accepted.
+/// The search covers half to twice the present value; for an angle, 45 deg to either side. `None`
+/// if the text is no valid robot or has no such length.
 #[must_use]
 pub fn range(text: &str, keys: &[String]) -> Option<(f64, f64)> {
     let own = Description::of(&Robot::parse(text).ok()?).lengths;

@@ -10,7 +10,7 @@ use tsify::Tsify;
 pub struct Refused {
     /// The message for the user: what is wrong, and where.
     pub refused: String,
-    /// The mistake without its place and figures; `None` where the message has no shorter form.
+    /// The consequence for the robot, without keys and figures; `None` if the message has none.
     pub meaning: Option<String>,
     /// Line of the file, counted from 1; `None` if the refusal belongs to no line.
     pub line: Option<usize>,
@@ -19,7 +19,7 @@ pub struct Refused {
 }
 
 impl Refused {
-    /// Refuses a gait whose text the user does not see, so without its line.
+    /// Converts the error of a gait; drops the line, since the user does not see the gait's text.
     pub(crate) fn of_gait(error: Error) -> Self {
         let Error {
             meaning,

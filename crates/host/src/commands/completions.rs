@@ -31,7 +31,7 @@ pub struct ManArgs {
     folder: PathBuf,
 }
 
-/// Runs `lizard completions` for the program.
+/// Runs `lizard completions`: prints a shell's completion script for `command`.
 ///
 /// # Errors
 /// Fails if standard output cannot be written.
@@ -57,7 +57,7 @@ fn offer_robots(script: &str) -> String {
     let mut is_robot = false;
     let lines = script.lines().map(|line| {
         let narrowed = match line.trim_start() {
-            // The line after the option's name.
+            // bash: the line after `--robot)`.
             words if is_robot && words == BASH => line.replace(BASH, &bash),
             words if words.starts_with("'--robot=") => {
                 line.replace(":_files'", ":_files -g \"*.toml\"'")
@@ -74,7 +74,7 @@ fn offer_robots(script: &str) -> String {
     lines.collect()
 }
 
-/// Runs `lizard completions man` for the program.
+/// Runs `lizard completions man`: writes the manual pages of `command` and its subcommands.
 ///
 /// # Errors
 /// Fails if a file cannot be written.

@@ -10,7 +10,7 @@ use clap::Command;
 use super::absent;
 use super::known::{CommandEntry, Group};
 
-/// Returns the command with a help that lists its subcommands in groups.
+/// Returns the command with a help text that lists its subcommands in groups.
 pub(super) fn grouped(command: Command, known: &[CommandEntry]) -> Command {
     let list = list(&command, known);
     let lacks = absent::list(known);
@@ -45,7 +45,7 @@ fn list(command: &Command, known: &[CommandEntry]) -> String {
             };
             let below: Vec<&str> = sub.get_subcommands().map(Command::get_name).collect();
             let also = note("also", &aliases) + &note("with", &below);
-            // Braces would be placeholders of the template.
+            // clap would read braces as placeholders of the template.
             let about = about.replace(['{', '}'], "");
             _ = writeln!(text, "  {:<width$}  {about}{also}", sub.get_name());
         }

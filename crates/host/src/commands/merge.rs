@@ -27,11 +27,11 @@ pub struct MergeArgs {
     files: Vec<PathBuf>,
 }
 
-/// Reads all parts, and runs the command with what they have found.
+/// Reads all parts, and runs the command with their results.
 ///
 /// # Errors
-/// Fails if a part is missing, is given twice or differs from the others; and the command's own
-/// errors.
+/// Fails if a part is missing, is given twice or does not belong to the others, or if the command
+/// itself fails.
 pub fn merge(args: MergeArgs) -> Result<(), Failure> {
     let whole = MergedParts::of(shares(&args.files)?)?;
     match whole.command.as_str() {
@@ -77,7 +77,7 @@ fn shares(files: &[PathBuf]) -> Result<Vec<PartOutput>, Failure> {
     Ok(shares)
 }
 
-/// All parts of one computation.
+/// The joined parts of one computation.
 struct MergedParts {
     command: String,
     options: Value,
@@ -86,7 +86,7 @@ struct MergedParts {
 }
 
 impl MergedParts {
-    /// Joins the parts, if they all belong to one computation.
+    /// Joins the parts; fails unless they are all the parts of one computation.
     fn of(shares: Vec<PartOutput>) -> Result<Self, Failure> {
         let refused = |reason: String| Err(Failure::Input(reason));
         let Some(first) = shares.first() else {
@@ -142,7 +142,7 @@ impl MergedParts {
         Ok(whole)
     }
 
-    /// Runs the command as on one machine, with the pieces that were found.
+    /// Runs the command as on one machine, with the parts' results in place of the computation.
     #[cfg_attr(
         not(any(feature = "paper", feature = "parts")),
         allow(dead_code, reason = "nothing can be spread")

@@ -33,7 +33,7 @@ pub struct Args {
     robot: RobotFile,
 }
 
-/// An image in a file, under the names of `--json`.
+/// The description of an image file, with the field names of `--json`.
 #[derive(Serialize)]
 struct ImageFile {
     file: String,
@@ -44,10 +44,10 @@ struct ImageFile {
     robot_space: u16,
 }
 
-/// Makes the image.
+/// Runs `lizard flash image`.
 ///
 /// # Errors
-/// Fails if the robot is wrong, or the file cannot be written.
+/// Fails if the robot is invalid, standard output is a terminal, or the file cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     if args.output.is_none() && io::stdout().is_terminal() {
         return Err(Failure::Input(

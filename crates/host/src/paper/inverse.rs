@@ -8,12 +8,12 @@ use crate::Failure;
 use crate::shared::json;
 use crate::shared::number::tidy;
 
-/// The answer to a question for head or tail points.
+/// The solutions for the head and tail points that were asked for.
 #[derive(Serialize)]
 struct Report {
     head: Option<Loop>,
     tail: Option<Loop>,
-    /// The pose with both elbows outward; an end that was not given is at neutral.
+    /// The pose with all elbows outward; an end without a point is at neutral.
     pose: Option<Angles>,
     safe: bool,
     why: Vec<String>,
@@ -40,15 +40,15 @@ struct Loop {
 struct ModeSolution {
     left: &'static str,
     right: &'static str,
-    /// The place of the end point, seen from the line between the crank tips.
+    /// Place of the end point relative to the crank tips: `ahead` or `behind`.
     assembly_mode: &'static str,
     /// Left servo (A1 or A4), degrees, chassis frame.
     theta_left: f64,
-    /// Right servo (A2 or A3).
+    /// Right servo (A2 or A3), degrees, chassis frame.
     theta_right: f64,
-    /// Distance of the forward solution from the point, mm.
+    /// Distance between the forward solution and the point, mm.
     error_mm: f64,
-    /// The least of the loop's margins.
+    /// The smallest of the loop's margins.
     margin: f64,
     reachable: bool,
     why: Vec<String>,
@@ -57,7 +57,7 @@ struct ModeSolution {
 /// Prints the servo angles that put head and tail at these points, mm.
 ///
 /// # Errors
-/// Fails for a point out of reach, or an output that cannot be written.
+/// Fails if a point is out of reach, or if the output cannot be written.
 pub fn print(robot: &Robot, ends: [Option<Vector>; 2], json: bool) -> Result<(), Failure> {
     let [head, tail] = ends;
     let head = head.map(|point| solve(robot, End::Head, point));
@@ -110,7 +110,7 @@ fn solve_mode(robot: &Robot, end: End, point: Vector, a: InverseSolution) -> Mod
         );
     }
     if let Ok(pose) = &pose {
-        // In the other assembly mode the type-2 margin is negative, which is stated.
+        // Behind the crank tips the type-2 margin is negative; the reason above says so.
         let stated = |check| behind && Check::TYPE2.contains(&check);
         let broken = robot.limits().end_violations(end, pose);
         reasons.extend(broken.filter(|v| !stated(v.what)).map(|v| v.to_string()));
@@ -188,7 +188,7 @@ fn text(report: &Report) -> String {
             page += &format!("  {reason}\n\n");
             continue;
         }
-        // Both in servo order; the tail's left servo is A4.
+        // The columns are in servo order, A3 before A4; the tail's left servo is A4.
         let swapped = name == "tail";
         page += &format!(
             "  {} arm   {} arm   {:>10} {:>10}  assembly  margin   error mm   this robot\n",
@@ -235,7 +235,7 @@ fn text(report: &Report) -> String {
     page
 }
 
-/// An error in mm; all rounding errors count as equal.
+/// The text of an error in mm. All errors below 1e-9, from rounding, read the same.
 fn format_mm_error(mm: f64) -> String {
     if mm < 1e-9 {
         "< 1e-9".to_string()

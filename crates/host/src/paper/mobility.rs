@@ -5,10 +5,9 @@
 //! vy of its point at the origin, and omega), every joint gives two rows, and the degrees of
 //! freedom are the columns less the rank.
 //!
-//! A second question is whether the servos control these freedoms: at a type-2 singularity
-//! their number is the same, but the servos do not control one of them. So the rank is computed
-//! again with the driven cranks locked, which adds a row for each. All that can still move then
-//! is loose.
+//! At a type-2 singularity the number of freedoms is the same, but the servos do not control one
+//! of them. So the rank is computed again with the driven cranks locked, which adds a row for
+//! each crank. A link that can still move then is loose.
 
 use lizard_kinematics::{Lizard, Side, Solution, Vector};
 use nalgebra::{DMatrix, DVector, SVD};
@@ -17,24 +16,24 @@ use serde::Serialize;
 use crate::Failure;
 use crate::shared::json;
 
-/// Singular values below this share of the largest are zero: a pose typed with
-/// seven digits is met.
+/// Singular values below this share of the largest count as zero, so that a singular
+/// pose typed with seven digits is found.
 const RANK_TOLERANCE: f64 = 1e-7;
 
-/// Links that move by less than this share of the fastest stand still.
+/// Links slower than this share of the fastest count as standing still.
 const STILL: f64 = 1e-3;
 
-/// A unit of length that makes rows in mm and in radians comparable.
+/// The unit of length, mm, that makes rows in mm and in radians comparable.
 const LENGTH: f64 = 50.0;
 
-/// A mechanism: its joints connect links, of which number 0 does not move.
+/// A mechanism: joints that connect links. Link 0 is fixed.
 struct Mechanism {
     name: &'static str,
     links: usize,
     joints: Vec<Joint>,
-    /// The driven links.
+    /// The numbers of the links that a servo drives.
     driven: Vec<usize>,
-    /// The message for each group of links that moves although the driven ones are locked.
+    /// Groups of links, each with the message if one moves while the driven links are locked.
     parts: &'static [(&'static [usize], &'static str)],
 }
 
@@ -55,27 +54,28 @@ struct Report {
     mechanism: &'static str,
     links: usize,
     joints: usize,
-    /// 3 (N - 1 - j) + sum f.
+    /// Gruebler's count, 3 (N - 1 - j) + sum f: N links, j joints with f freedoms each.
     gruebler: i64,
-    /// Rows and columns of the constraint Jacobian.
+    /// Rows of the constraint Jacobian.
     constraints: usize,
+    /// Columns of the constraint Jacobian.
     velocities: usize,
     rank: usize,
-    /// Columns less rank.
+    /// Columns minus rank.
     freedoms: usize,
-    /// The same with the driven cranks locked; 0 where they hold everything.
+    /// The same with the driven cranks locked; 0 if nothing can move then.
     locked_freedoms: usize,
-    /// The parts that move with locked cranks.
+    /// Messages for the parts that move while the cranks are locked.
     loose: Vec<&'static str>,
-    /// Smallest singular value over the largest, cranks locked: near 0, near a
+    /// Smallest singular value divided by the largest, cranks locked; it approaches 0 at a
     /// singularity.
     conditioning: f64,
 }
 
-/// Prints the degrees of freedom of body and legs.
+/// Prints the degrees of freedom of the body and of each leg.
 ///
 /// # Errors
-/// Fails for an output that cannot be written.
+/// Fails if the output cannot be written.
 pub fn print(lizard: &Lizard, solution: &Solution, json: bool) -> Result<(), Failure> {
     let legs = ["leg LF (A1)", "leg RF (A2)", "leg RH (A3)", "leg LH (A4)"];
     let mut all = vec![body(lizard, solution)];
@@ -173,8 +173,8 @@ fn body(lizard: &Lizard, s: &Solution) -> Mechanism {
     }
 }
 
-/// A leg in a frame of its own: ground 0, crank 1, coupler 2, follower 3. The
-/// spring to the body holds nothing rigidly, so it is not a link.
+/// A leg's four-bar in a frame of its own: ground 0, crank 1, coupler 2, follower 3. The
+/// spring to the body imposes no rigid constraint, so it is not a link.
 fn leg(lizard: &Lizard, s: &Solution, servo: usize, name: &'static str) -> Mechanism {
     let crank = s.legs[servo].direction * lizard.leg.crank;
     let across = Vector::new(lizard.leg.ground, 0.0);
@@ -200,17 +200,17 @@ fn leg(lizard: &Lizard, s: &Solution, servo: usize, name: &'static str) -> Mecha
     }
 }
 
-/// Freedoms of the body at a pose, by rank.
+/// The body's degrees of freedom at a pose, by rank.
 pub fn body_freedoms(lizard: &Lizard, solution: &Solution) -> usize {
     freedoms(&body(lizard, solution))
 }
 
-/// Freedoms of the front left leg at a pose, by rank.
+/// The front left leg's degrees of freedom at a pose, by rank.
 pub fn leg_freedoms(lizard: &Lizard, solution: &Solution) -> usize {
     freedoms(&leg(lizard, solution, 0, "leg"))
 }
 
-/// Freedoms of a mechanism whose servos turn, by rank.
+/// A mechanism's degrees of freedom with unlocked servos, by rank.
 fn freedoms(mechanism: &Mechanism) -> usize {
     let free = jacobian(mechanism, &[]);
     free.ncols() - rank(&free.singular_values())
@@ -228,7 +228,7 @@ fn measure(mechanism: &Mechanism) -> Report {
     if let Some(directions) = &locked.v_t {
         for (value, direction) in values.iter().zip(directions.row_iter()) {
             if *value <= zero {
-                // How fast each moving link is in this direction.
+                // Speed of each moving link in this direction.
                 let speeds: Vec<f64> = (0..mechanism.links - 1)
                     .map(|link| direction.columns(3 * link, 3).norm())
                     .collect();
@@ -279,12 +279,12 @@ fn jacobian(mechanism: &Mechanism, locked: &[usize]) -> DMatrix<f64> {
     for (i, joint) in mechanism.joints.iter().enumerate() {
         for (link, sign) in [(joint.links[0], 1.0), (joint.links[1], -1.0)] {
             match joint.kind {
-                // One velocity of the common point: v + omega x p.
+                // Both links give the common point the same velocity, v + omega x p.
                 Kind::Revolute(p) => {
                     add(2 * i, link, [sign, 0.0, -sign * p.y / LENGTH]);
                     add(2 * i + 1, link, [0.0, sign, sign * p.x / LENGTH]);
                 }
-                // One omega, and one velocity across the slide.
+                // Both links have the same omega, and the same velocity across the slide.
                 Kind::Prismatic(p, along) => {
                     let n = along.left();
                     add(2 * i, link, [0.0, 0.0, sign]);

@@ -1,5 +1,5 @@
-//! A simulated UNO, used as with a serial cable and an oscilloscope: power it on, send
-//! lines, read answers, look at its servos' pulses.
+//! A simulated UNO, used as if through a serial cable and an oscilloscope: power it on, send
+//! lines, read answers, measure the servos' pulses.
 
 use std::path::Path;
 
@@ -15,11 +15,11 @@ use crate::simulate::sim::lines::{Line, LineReader};
 use crate::simulate::sim::supplies;
 
 /// The longest wait for an answer after its command has been sent, ms. The
-/// console promises much less.
+/// firmware's console promises a much shorter time.
 const TIMEOUT_MS: u64 = 200;
 /// The longest wait for the banner after power-on, ms.
 pub(crate) const BANNER_MS: u64 = 500;
-/// Cycles that a byte of the sender takes, rounded up.
+/// Cycles of the UNO that a byte takes on the serial line, rounded up.
 const BYTE_CYCLES: u64 = 1400;
 
 /// The reason why a board did not do what a test asked for.
@@ -36,7 +36,7 @@ pub enum BoardError {
     Silent {
         /// The command that was sent.
         line: String,
-        /// The information lines that came.
+        /// The information lines received instead.
         notes: Vec<String>,
     },
     /// The firmware sleeps with interrupts off.
@@ -51,7 +51,7 @@ pub enum BoardError {
     /// The watchdog fired.
     #[error("the watchdog reset the firmware")]
     Reset,
-    /// A function cannot be timed.
+    /// The ELF has no function of this name, or more than one.
     #[error("the ELF has no one function {0}")]
     Function(String),
     /// A line of `status` lacks a counter.
@@ -86,12 +86,12 @@ pub struct SimulatedBoard {
     lines: Vec<Line>,
     /// Number of lines that [`SimulatedBoard::next_line`] has returned.
     returned: usize,
-    /// The start of some frame, from which others are counted.
+    /// The cycle at which one frame starts; others are counted from it.
     anchor: Option<u64>,
 }
 
 impl SimulatedBoard {
-    /// Powers a robot's board on, its supplies in good order; not a cycle has passed.
+    /// Powers on a robot's board with healthy supplies; no cycle has run yet.
     ///
     /// # Errors
     /// Fails if the ELF file is missing or wrong.
@@ -110,7 +110,7 @@ impl SimulatedBoard {
     /// Powers a board on and waits for the lizard's banner.
     ///
     /// # Errors
-    /// See [`SimulatedBoard::power_on`]; another first line, or none within 500 ms.
+    /// Fails as [`SimulatedBoard::power_on`] does, or if the first line within 500 ms is no banner.
     pub fn boot(elf: &Path, fidelity: Fidelity, robot: &Robot) -> Result<Self, BoardError> {
         let mut board = Self::power_on(elf, fidelity, robot)?;
         match board.next_line(BANNER_MS) {
@@ -119,7 +119,7 @@ impl SimulatedBoard {
         }
     }
 
-    /// A board around any simulated UNO. `pins` are those of the servos A1 to A4.
+    /// Wraps any simulated UNO. `pins` are those of the servos A1 to A4.
     pub fn with_uno(uno: Uno, pins: [Pin; 4]) -> Self {
         Self {
             uno,
@@ -137,8 +137,8 @@ impl SimulatedBoard {
         self.pins
     }
 
-    /// Sends a line and returns its answer, the first line that is not
-    /// information. What came before is in [`SimulatedBoard::lines`].
+    /// Sends a line and returns its answer, the first line without `#`. The
+    /// `#` lines before it are in [`SimulatedBoard::lines`].
     ///
     /// # Errors
     /// Fails if there is no answer within 200 ms after the line has been sent.
@@ -146,7 +146,7 @@ impl SimulatedBoard {
         Ok(self.ask(line)?.1)
     }
 
-    /// Sends a line; returns the `#` lines that came first, and the answer.
+    /// Sends a line; returns the `#` lines before the answer, and the answer.
     ///
     /// # Errors
     /// See [`SimulatedBoard::say`].
@@ -170,8 +170,8 @@ impl SimulatedBoard {
         self.uno.send(b"\n");
     }
 
-    /// The next line not yet returned, waited for at most `ms` beyond the time
-    /// the sender needs. Line ends are gone.
+    /// Returns the next line without its line end; `None` if it does not come
+    /// within `ms` after the bytes still to be sent.
     pub fn next_line(&mut self, ms: u64) -> Option<String> {
         let sending = self.uno.unsent() as u64 * BYTE_CYCLES;
         let end = self.uno.cycle() + sending + ms * CYCLES_PER_MS;
@@ -207,10 +207,10 @@ impl SimulatedBoard {
         self.bytes.extend(bytes);
     }
 
-    /// A counter of `status`.
+    /// Asks for `status` and returns one of its counters.
     ///
     /// # Errors
-    /// See [`SimulatedBoard::say`]; `status` does not list it.
+    /// Fails as [`SimulatedBoard::say`] does, or if `status` has no such number.
     pub fn count(&mut self, key: &str) -> Result<u64, BoardError> {
         let status = self.say("status")?;
         let value = status.split(' ').find_map(|pair| {
@@ -221,10 +221,10 @@ impl SimulatedBoard {
         value.ok_or(BoardError::Counter { status, key })
     }
 
-    /// Lets time pass.
+    /// Runs the board for `ms` of simulated time.
     ///
     /// # Errors
-    /// Fails if the firmware crashes, halts or is reset meanwhile.
+    /// Fails if the firmware crashes, halts or is reset, or the power is off.
     pub fn run_ms(&mut self, ms: u64) -> Result<(), BoardError> {
         self.run_until(self.uno.cycle() + ms * CYCLES_PER_MS)
     }
@@ -244,8 +244,8 @@ impl SimulatedBoard {
         }
     }
 
-    /// Lets time pass and times every call of a function of the firmware, named
-    /// as in `Control::frame`.
+    /// Runs the board for `ms` and times every call of a firmware function,
+    /// given by its path, such as `Control::frame`.
     ///
     /// # Errors
     /// Fails if the ELF has no such function, or more than one.
@@ -256,14 +256,14 @@ impl SimulatedBoard {
         Ok(self.uno.time_calls(entry, ms * CYCLES_PER_MS))
     }
 
-    /// The cycles spent so far in the handlers of the counted vectors.
+    /// The cycles spent so far in the handlers of the vectors that `is_counted` accepts.
     pub fn handler_cycles(&self, is_counted: impl Fn(u8) -> bool) -> u64 {
         let all = self.uno.interrupts();
         let counted = all.iter().filter(|used| is_counted(used.vector));
         counted.map(|used| used.cycles).sum()
     }
 
-    /// Cycle of A1's first pulse among the edges not taken yet.
+    /// The cycle at which A1's first pulse starts, among the edges not yet taken.
     ///
     /// # Errors
     /// Fails if there is none.
@@ -273,9 +273,9 @@ impl SimulatedBoard {
         first.ok_or(BoardError::NoPulse)
     }
 
-    /// Lets `count` whole frames pass, starting with the next, and returns
-    /// their pulses. Frames are counted from A1's latest pulse on; before
-    /// there has been one, from now. Edges recorded before are dropped.
+    /// Runs `count` whole frames, starting with the next, and returns their
+    /// pulses. Frames are aligned to A1's latest pulse or, if there was none,
+    /// to the present cycle. Edges recorded earlier are dropped.
     ///
     /// # Errors
     /// See [`SimulatedBoard::run_ms`].

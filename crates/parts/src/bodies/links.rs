@@ -18,14 +18,14 @@ const HORN_SCREWS: [f64; 2] = [0.52, 0.83];
 /// Radius of the hole that such a screw cuts its thread into, mm.
 const PILOT: f64 = 0.7;
 /// Length of such a screw, mm: one of 5 mm would reach the servo's boss under the link.
-/// And radius and height of its head, mm.
+/// Below it, radius and height of the screw's head, mm.
 pub const HORN_SCREW: f64 = 4.0;
 const HORN_SCREW_HEAD: [f64; 2] = [1.5, 1.0];
 
 /// Wall of the ring between strut and link, mm: the spring's coil leaves room for no more.
 const RING: f64 = 1.1;
 
-/// Air on each side of a horn's arm in its pocket, in fits: horns spread.
+/// Clearance on each side of a horn's arm in its pocket, in multiples of `fit`: horns vary in size.
 pub const POCKET: f64 = 1.5;
 
 pub fn add(builder: &mut Builder) {
@@ -37,7 +37,7 @@ pub fn add(builder: &mut Builder) {
     }
 }
 
-/// The horn's arm, which points along the crank; `grown` by a pocket's air.
+/// The outline of the horn's arm, which points along the crank, widened by `grown` mm on each side.
 pub fn arm(horn: &Horn, grown: f64) -> Vec<Shape> {
     let (hub, tip) = (horn.hub / 2.0 + grown, horn.tip / 2.0 + grown);
     let end = Vector::new(horn.arm - horn.tip / 2.0, 0.0);
@@ -154,7 +154,7 @@ fn add_anchor(builder: &mut Builder, servo: usize) {
     let position = builder.layout.legs[servo].anchor;
     let strut = builder.strut(leg);
     let ring = [stack.on_hook, stack.link[0] - PLAY];
-    // Beside the spring's coil.
+    // Thin enough to fit beside the spring's coil.
     let thin = Shape::disc(position, parts.screw.diameter / 2.0 + RING);
     let prism = Prism::new([thin], [builder.hole(position)], ring);
     builder.printed(format!("strut ring {name}"), Mount::Link(servo), [prism]);

@@ -1,7 +1,7 @@
-//! The sides: a rod in a sleeve between the arms of a front and a rear servo.
+//! The sliders: a rod in a sleeve between the arms of a front and a rear servo.
 //!
-//! The sleeve would be too short for the stroke if it lay between the pins. So both
-//! lie beside them, the sleeve begins at the rear pin, and the rod passes it.
+//! A sleeve between the pins would be too short for the stroke. So sleeve and rod lie
+//! beside the pins, the sleeve begins at the rear pin, and the rod may pass that pin.
 
 use lizard_kinematics::{Side, Vector};
 use lizard_robot::Robot;
@@ -17,17 +17,17 @@ pub const BESIDE: f64 = 9.0;
 pub(crate) const ROD: f64 = 6.0;
 /// The least length of the rod inside its sleeve, mm.
 const OVERLAP: f64 = 20.0;
-/// From the sleeve's end to the front pin at the shortest, mm.
+/// Gap between the sleeve's end and the front pin at the shortest stroke, mm.
 const SHORTEST_GAP: f64 = 8.0;
 
-/// Lengths of one slider, mm, along its line from the rear pin.
+/// Lengths of one slider, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SliderLengths {
-    /// From the rear pin, where the sleeve begins, to its other end.
+    /// Length of the sleeve, which begins at the rear pin.
     pub sleeve: f64,
-    /// The rod, from the front pin to its rear end.
+    /// Length of the rod, from the front pin to its rear end.
     pub rod: f64,
-    /// From the pins' line to the rod's, positive to the left.
+    /// Offset of sleeve and rod from the pins' line, positive to the left.
     pub beside: f64,
 }
 
@@ -85,7 +85,7 @@ fn add_rod(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
     let pin = Vector::default();
     let middle = Vector::new(-lengths.rod / 2.0, lengths.beside);
     let bar = Shape::rectangle(middle, Vector::new(lengths.rod, ROD), 1.0);
-    // Ahead of the pin, so that the sleeve may come near.
+    // The bend lies ahead of the pin, so that the sleeve may come near.
     let bend = Shape::bar(pin, Vector::new(1.0, lengths.beside), half - 0.02);
     let add = [Shape::disc(pin, half), bend, bar];
     let prism = Prism::new(add, [builder.hole(pin)], builder.stack.rod);
@@ -108,7 +108,7 @@ fn add_pins(builder: &mut Builder, side: Side) {
     builder.held_joint(&format!("arm {name}"), mount, at, stack.rod[1], &[&rod]);
 }
 
-/// The shortest and the longest distance of a slider's pins, mm.
+/// The shortest and the longest distance between a slider's pins, mm.
 pub fn slider_range(robot: &Robot, side: Side) -> [f64; 2] {
     let (slider, limits) = (robot.lizard().side(side), robot.limits());
     [

@@ -1,4 +1,4 @@
-//! The names in the pictures of the guide: the new bodies of a step with their number, the
+//! Labels in the pictures of the guide: the new bodies of a step with their counts, the
 //! servos, and the two ends of the robot.
 
 use std::collections::BTreeMap;
@@ -12,8 +12,8 @@ use crate::guide::picture::PictureBody;
 use crate::layers::body::{Body, Kind, Mount};
 use crate::part::Part;
 
-/// A body's name in the guide: of a screw its length, of a printed part its file's name and
-/// its mark.
+/// A body's name in the guide, such as `M3 x 12` for a screw; for a printed part its noun
+/// and its mark. `None` for a lead, and for a printed body that is in none of `parts`.
 pub fn called(body: &Body, parts: &[Part]) -> Option<String> {
     Some(match body.kind {
         Kind::Screw(length) => format!("M3 x {length}"),
@@ -46,7 +46,7 @@ pub fn counted(bodies: &[&Body], parts: &[Part]) -> Vec<String> {
     for body in bodies {
         if let Some(name) = called(body, parts) {
             let screw = !body.kind.is_printed();
-            // M3 x 8 comes before M3 x 12.
+            // Shorter names come first: M3 x 8 before M3 x 12.
             *counts.entry((screw, name.len(), name)).or_default() += 1;
         }
     }
@@ -91,7 +91,7 @@ pub fn names(
     labels.collect()
 }
 
-/// The servos' names at their places, and the names of both ends.
+/// Labels with the servos' names at their places, and with the names of both ends.
 pub fn places(assembly: &Assembly, pose: &Solution) -> Vec<Label> {
     /// Height of the links, mm.
     const LINK_HEIGHT: f64 = 18.0;
@@ -101,7 +101,7 @@ pub fn places(assembly: &Assembly, pose: &Solution) -> Vec<Label> {
         text: text.to_owned(),
         beside: false,
     };
-    // On its link, beside the shaft, which the board may hide.
+    // The label is on the link, beside the shaft, which the board may hide.
     let on_link = |servo: usize| {
         let out = Vector::new(0.7 * assembly.layout().crank[servo], 0.0);
         assembly.place(Mount::Link(servo), pose).map(out)

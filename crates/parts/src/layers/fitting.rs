@@ -1,7 +1,7 @@
-//! The things that the robot carries besides its mechanism: supply, terminal strips, plugs.
+//! The parts that the robot carries besides its mechanism: supply, terminal strips, plugs.
 //!
-//! Shops have them in many sizes, so each has a room on the robot that common products fit
-//! into; two of them are named with their sizes, and a test holds that they fit.
+//! Shops sell them in many sizes, so the robot reserves a space for each into which common
+//! products fit. Two products are named with their sizes; a test checks that they fit.
 
 use std::fmt;
 
@@ -9,25 +9,25 @@ use lizard_robot::{FUSE, SWITCH};
 
 use crate::price::Price;
 
-/// Width of the battery's strap, and its thickness, mm.
+/// Width and thickness of the battery's strap, mm.
 pub const STRAP: [f64; 2] = [16.0, 1.5];
 /// Pitch of the ways of a terminal strip of the 3 A size, mm.
 pub const PITCH: f64 = 8.0;
 
-/// Batteries of two lithium cells that go into the room of `[parts] battery`.
+/// Batteries of two lithium cells that fit into the space of `[parts] battery`.
 pub const BATTERIES: [Example; 2] = [
     Example::usual("GL Racing 2S 450 mAh", [21.0, 56.0, 14.0]),
     Example::usual("JJRC H8D 2S 500 mAh", [25.0, 55.0, 12.5]),
 ];
 
-/// A product that goes into a room, or a kind of it where shops name no make.
+/// A product that fits into a reserved space, or a kind of product where shops name no make.
 #[derive(Clone, Copy, Debug)]
 pub struct Example {
-    /// The maker's name or number of it.
+    /// The maker's name or number for the product.
     pub name: &'static str,
-    /// To the right, forward, up, mm; with the tolerances of its data sheet, if this gives any.
+    /// Size to the right, forward, up, mm; includes tolerances if the data sheet gives any.
     pub size: [f64; 3],
-    /// True if a data sheet or a drawing says so; false for what shops and users give.
+    /// True if the size is from a data sheet or drawing; false if from shops or users.
     pub drawn: bool,
 }
 
@@ -51,12 +51,12 @@ impl fmt::Display for Example {
     }
 }
 
-/// A thing that is bought and put on the robot.
+/// A part that is bought and mounted on the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fitting {
     /// A converter that makes 5 V for the servos from the battery's voltage.
     Converter,
-    /// A capacitor that keeps the servos' supply up when they start.
+    /// A capacitor that supports the servos' supply while they start.
     Capacitor,
     /// An alarm that beeps before the battery is damaged.
     Alarm,
@@ -80,30 +80,30 @@ pub enum Fitting {
     RoundPlug,
     /// A strap that holds the battery.
     Strap,
-    /// The room kept for a radio module, which is an option.
+    /// The space reserved for an optional radio module.
     Radio,
 }
 
 /// The facts about a fitting.
 #[derive(Clone, Copy, Debug)]
 pub struct FittingFacts {
-    /// The name as a body; several of one kind get a number.
+    /// The name of its body; several of one kind are numbered.
     pub name: &'static str,
-    /// The mass, g, as shops give it.
+    /// The mass, g, as stated by shops.
     pub grams: f64,
-    /// The room for it: to the right, forward, up, mm.
+    /// The space reserved for it: to the right, forward, up, mm.
     pub size: [f64; 3],
     /// The article to buy, without rating and size.
     pub what: &'static str,
     /// The position on the robot.
     pub place: &'static str,
-    /// The fastening there.
+    /// The means of fastening it there.
     pub hold: &'static str,
-    /// Two products that go into the room.
+    /// Two products that fit into the space.
     pub examples: [Example; 2],
 }
 
-/// The two common makes of terminal strips with a pitch of 8 mm, as pieces of some ways.
+/// The two common makes of terminal strips with a pitch of 8 mm, cut to `ways` ways.
 const fn strips(ways: f64) -> [Example; 2] {
     let length = ways * PITCH;
     [
@@ -113,7 +113,7 @@ const fn strips(ways: f64) -> [Example; 2] {
 }
 
 impl Fitting {
-    /// Every kind, in the order in which the current passes them.
+    /// Every kind, roughly in the order of the current's path from the battery.
     pub const ALL: [Self; 14] = [
         Self::Strap,
         Self::Plug,
@@ -131,7 +131,7 @@ impl Fitting {
         Self::Radio,
     ];
 
-    /// The facts about it.
+    /// Returns the facts about this kind.
     pub fn facts(self) -> FittingFacts {
         match self {
             Self::Converter => FittingFacts {
@@ -293,12 +293,12 @@ impl Fitting {
         }
     }
 
-    /// The name as a body.
+    /// The name of its body.
     pub fn name(self) -> &'static str {
         self.facts().name
     }
 
-    /// The line in the list to buy; empty for a piece of another strip, and for an option.
+    /// The line in the shopping list; empty for a piece of another strip and for an option.
     pub fn what(self) -> String {
         let FittingFacts { what, size, .. } = self.facts();
         let [x, y, z] = size;
@@ -308,7 +308,7 @@ impl Fitting {
                     "terminal strip, 12 ways, pitch 8 mm (3 A size), at most {x} x {y} x {z} mm"
                 )
             }
-            // Three pieces of one more strip.
+            // A second strip is cut into the supply, signal and plus pieces.
             Self::Supply => Self::Ground.what(),
             Self::Signals | Self::Plus | Self::Radio => String::new(),
             Self::Resistor | Self::Strap | Self::Plug | Self::RoundPlug => what.to_owned(),
@@ -319,7 +319,7 @@ impl Fitting {
         }
     }
 
-    /// The price class of its row of the bill.
+    /// The price class of its row in the bill of materials.
     pub fn price(self) -> Price {
         match self {
             Self::Resistor => Price::A,

@@ -2,7 +2,7 @@
 
 use lizard_kinematics::{Real, Vector};
 
-/// The place of a body's frame in the chassis frame, or in another body's.
+/// The position and rotation of a body's frame in the chassis frame, or in another body's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement<T = f64> {
     /// The frame's origin, mm.
@@ -18,7 +18,7 @@ impl Placement {
         turn: Vector::new(1.0, 0.0),
     };
 
-    /// A point of the chassis frame in the body's frame.
+    /// Converts a point from the chassis frame to the body's frame, mm.
     pub fn unmap(&self, point: Vector) -> Vector {
         let from = point - self.at;
         Vector::new(from.dot(self.turn), self.turn.cross(from))
@@ -26,7 +26,7 @@ impl Placement {
 }
 
 impl<T: Real> Placement<T> {
-    /// A point of the body's frame in the chassis frame.
+    /// Converts a point from the body's frame to the chassis frame, mm.
     pub fn map(&self, point: Vector) -> Vector<T> {
         self.at + self.turn * point.x + self.turn.left() * point.y
     }

@@ -13,9 +13,9 @@ use crate::layers::placement::Placement;
 /// The convex hull of some points, grown by a radius; mm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shape {
-    /// Corners of a convex polygon, counter-clockwise; one of a disc, two of a bar.
+    /// Corners of a convex polygon, counter-clockwise; one for a disc, two for a bar.
     pub points: Vec<Vector>,
-    /// Distance by which the hull is grown: 0 for sharp corners.
+    /// Distance by which the hull is grown, mm: 0 for sharp corners.
     pub radius: f64,
 }
 
@@ -84,25 +84,25 @@ impl Shape {
         }
     }
 
-    /// The mean of its points.
+    /// The mean of the polygon's corners.
     pub fn middle(&self) -> Vector {
         let sum = self.points.iter().fold(Vector::default(), |a, b| a + *b);
         sum * (1.0 / self.points.len() as f64)
     }
 
-    /// The largest distance of any of its points from one point, mm.
+    /// The largest distance of any point of the shape from one point, mm.
     pub fn farthest(&self, from: Vector) -> f64 {
         let distances = self.points.iter().map(|&point| (point - from).length());
         distances.fold(0.0, f64::max) + self.radius
     }
 
-    /// The greatest distance of two of its points, mm.
+    /// The largest distance between two points of the shape, mm.
     pub fn width(&self) -> f64 {
         let largest = self.points.iter().map(|&point| self.farthest(point));
         largest.fold(0.0, f64::max) + self.radius
     }
 
-    /// The same shape at a place.
+    /// The shape moved to a place.
     pub fn placed(&self, place: &Placement) -> Self {
         Self {
             points: self.points.iter().map(|&point| place.map(point)).collect(),
@@ -118,9 +118,9 @@ impl Shape {
         }
     }
 
-    /// The distance to another shape, mm: 0 where they touch. Where they overlap, minus
-    /// the shortest way that takes them apart. No point that moves by a length changes
-    /// it by more than that length.
+    /// The distance to another shape, mm: 0 if they touch; if they overlap, minus the
+    /// length of the shortest shift that parts them. If a point moves by some length, the
+    /// distance changes by no more than that length.
     pub fn distance(&self, other: &Self) -> f64 {
         let mut between = f64::INFINITY;
         if self.contains(other.points[0]) || other.contains(self.points[0]) {
@@ -140,8 +140,8 @@ impl Shape {
         between - self.radius - other.radius
     }
 
-    /// Depth of this shape within another, mm; below 0 if it sticks out. Each point may have
-    /// `strayed` along x and y; then the least depth.
+    /// Depth of this shape within a hole, mm; below 0 if it sticks out. A lower bound if its
+    /// points may be displaced, by up to `strayed` along x and y.
     pub fn within(&self, hole: &Self, strayed: Vector) -> f64 {
         let sharp = Self {
             points: hole.points.clone(),
@@ -170,8 +170,8 @@ impl Shape {
         }
     }
 
-    /// The lines along the polygon's sides: a point of each, and the way out, length
-    /// one. A disc has none.
+    /// The lines along the polygon's sides: a point on each, and its unit normal, which
+    /// points outward. A disc has none.
     fn lines(&self) -> impl Iterator<Item = (Vector, Vector)> {
         let n = self.points.len();
         (0..if n > 1 { n } else { 0 }).map(move |i| {
@@ -203,7 +203,7 @@ impl Shape {
     }
 }
 
-/// The distance of two line segments, mm.
+/// The distance between two line segments, mm.
 fn segments(a: Vector, b: Vector, c: Vector, d: Vector) -> f64 {
     let side = |p: Vector, q: Vector, r: Vector| (q - p).cross(r - p);
     let crosses = side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0;
@@ -214,7 +214,7 @@ fn segments(a: Vector, b: Vector, c: Vector, d: Vector) -> f64 {
     first.min(to_line(c, a, b)).min(to_line(d, a, b))
 }
 
-/// The distance of a point from a line segment, mm.
+/// The distance between a point and a line segment, mm.
 fn to_line(point: Vector, from: Vector, to: Vector) -> f64 {
     let along = to - from;
     let square = along.square();
@@ -272,7 +272,7 @@ mod tests {
         let bore = Shape::rectangle(at(0.0, 0.0), at(50.0, 6.4), 0.0);
         let rod = Shape::rectangle(at(1.0, 0.0), at(40.0, 6.0), 1.0);
         near(rod.within(&bore, still), 0.2);
-        // A way along the bore costs nothing until the end, one across it all.
+        // A shift along the bore takes no air up to its end, a shift across takes it all.
         near(rod.within(&bore, at(3.0, 0.1)), 0.1);
         near(rod.within(&bore, at(3.9, 0.0)), 0.1);
         assert!(bore.within(&rod, still) < 0.0);

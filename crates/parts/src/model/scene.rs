@@ -14,7 +14,7 @@ pub struct Scene {
     pub long: [f64; 4],
     /// Stiffness of a foot's leaf, N/mm.
     pub stiffness: f64,
-    /// Friction of a pad that slides backward over that of one that slides forward.
+    /// Friction of a pad that slides backward, divided by that of one that slides forward.
     pub ratio: f64,
     /// The spring in the slotted struts; `None` for rigid struts.
     pub pull: Option<Pull>,
@@ -22,15 +22,15 @@ pub struct Scene {
     pub play: f64,
     /// The servos' motors, and the friction of the joints.
     pub motors: Motors,
-    /// Dry friction of each pin, N mm, besides that of `motors`; pins at which loops are closed
+    /// Dry friction of each pin, N mm, added to that of `motors`; pins at which loops are closed
     /// have none.
     pub pins: f64,
-    /// The floor that it stands on.
+    /// The floor under the robot.
     pub floor: Floor,
-    /// The shape of its pads.
+    /// The shape of the robot's pads.
     pub pads: Pads,
-    /// Mass of everything that moves on the chassis, as a share of its own; the chassis has the
-    /// rest.
+    /// Factor on the masses of all parts that move on the chassis; the mass that they lose is
+    /// added to the chassis.
     pub limbs: f64,
     /// True if the servos drive in bursts, as analog ones do.
     pub bursts: bool,
@@ -41,7 +41,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// The standing robot of a robot.toml.
+    /// The scene of the standing robot, with the values of its robot.toml.
     #[must_use]
     pub fn of(assembly: &Assembly) -> Self {
         let (drive, ground) = (assembly.robot().drive(), assembly.robot().ground());
@@ -73,8 +73,8 @@ impl Scene {
 pub enum Pads {
     /// Smooth domes of this radius, mm.
     Domes(f64),
-    /// Domes of the radius of `[parts.pad]` as a printer makes them: discs of this height, mm, with
-    /// sharp edges.
+    /// Domes of the radius of `[parts.pad]` as a printer makes them: stacked discs of this height,
+    /// mm, with sharp edges.
     Terraces(f64),
     /// Flat discs of this diameter, mm.
     Flat(f64),
@@ -111,8 +111,8 @@ const APPROACH_S: f64 = 0.4;
 const SETTLE_S: f64 = 0.3;
 
 impl Course {
-    /// Some cycles of a gait at its own pace, after a slow approach from neutral, with the
-    /// angles of the firmware's tables. The last `count` cycles are the ones to measure.
+    /// The course of `cycles` cycles of a gait at its own pace, after a slow approach from
+    /// neutral, with the angles of the firmware's tables. The last `count` cycles are measured.
     #[must_use]
     pub fn of(robot: &Robot, gait: &CheckedGait, cycles: u32, count: u32) -> Self {
         let angles = |seconds: f64| {

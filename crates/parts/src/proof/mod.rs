@@ -2,16 +2,16 @@
 //!
 //! Poses are not sampled. The space of the servos' angles is divided into regions. For each
 //! region the proof shows either that the guard accepts no pose in it, or that the parts stay
-//! apart in all of it: their distance in its middle is known, and no point moves within the
-//! region by more than its largest rate times the region's half width. The rates come from the
-//! closed forms of the mechanism in interval arithmetic (`interval.rs`, `slope.rs`), which
-//! holds for a coupler near a singularity, too. A region that is too large to prove either is
-//! halved (`search.rs`).
+//! apart in all of it: their distance is measured at the region's centre, and from there no
+//! point moves by more than its largest rate times the region's half width. The rates come from
+//! the closed forms of the mechanism in interval arithmetic (`interval.rs`, `slope.rs`), which
+//! is valid for a coupler near a singularity, too. A region that is too large to prove either
+//! is halved (`search.rs`).
 //!
 //! The relative position of two parts depends only on the servos of their mounts
-//! ([`Mount::servos`](crate::Mount::servos)): one or two, rarely three. So the whole proof takes seconds. `shape_pairs.rs` lists what has to keep clear of what,
-//! `sweep.rs` leaves out pairs that are never close, `guard.rs` knows what the guard
-//! certainly refuses.
+//! ([`Mount::servos`](crate::Mount::servos)): one or two, rarely three. So the whole proof takes
+//! seconds. `shape_pairs.rs` lists the pairs of shapes that have to keep clear, `sweep.rs` leaves
+//! out pairs that are never close, `guard.rs` finds the regions that the guard certainly refuses.
 
 pub(crate) mod clearance;
 mod first;
@@ -35,7 +35,7 @@ pub use search::ENOUGH;
 use search::Found;
 use shape_pairs::Task;
 
-/// Least allowed distance of parts that are not made to meet, mm: more than the error of a printer.
+/// Least allowed distance of parts that are not made to meet, mm: more than a printer's error.
 pub const MIN_GAP_MM: f64 = 0.2;
 /// Overlap of parts made to meet that still counts as touching, mm.
 const TOUCH: f64 = 0.02;
@@ -43,7 +43,7 @@ const TOUCH: f64 = 0.02;
 /// Number of angles per servo in the grid of poses at which the joints are checked.
 const JOINT_STEPS: u32 = 6;
 
-/// The least distance of two bodies.
+/// Two bodies and their least distance.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NearestPair {
     /// The name of one body.
@@ -55,8 +55,8 @@ pub struct NearestPair {
     /// An accepted pose with nearly that distance; `None` if they come no nearer than
     /// [`ENOUGH`], or if none is found.
     pub seen: Option<Clearance>,
-    /// Servo angles, deg, near which no larger distance could be proved, if the bound is
-    /// much below the distance seen. They are near the guard's limits, or just beyond.
+    /// Servo angles, deg, near which no larger distance could be proved; `None` if `proved` is
+    /// close to the distance seen. They are near the guard's limits, or just beyond.
     pub doubt: Option<[f64; 4]>,
 }
 
@@ -66,8 +66,8 @@ pub struct Proof {
     /// The nearest two bodies of each pair of mounts, without those that are made to meet;
     /// the nearest first.
     pub apart: Vec<NearestPair>,
-    /// The same for bodies that are made to meet, such as a pin and its hole: the gap
-    /// between them.
+    /// The same for bodies that are made to meet, such as a pin and its hole; here the
+    /// distance is the gap between them.
     pub meeting: Vec<NearestPair>,
     /// Bounds of each servo's angle over all accepted poses, deg.
     pub ranges: [[f64; 2]; 4],
@@ -107,7 +107,7 @@ impl fmt::Display for NearestPair {
 }
 
 impl NearestPair {
-    /// The clash of two bodies that have to keep a least distance, mm; `None` if they do.
+    /// The clash if the bodies come, or may come, closer than `min`, mm; `None` otherwise.
     fn clash(&self, min: f64) -> Option<Clash> {
         match &self.seen {
             Some(seen) if seen.mm < min.min(0.0) => Some(Clash::Overlap(Box::new(seen.clone()))),
@@ -117,7 +117,7 @@ impl NearestPair {
         }
     }
 
-    /// The least distance known, mm.
+    /// The least distance seen, mm; the proved bound if none was seen.
     fn mm(&self) -> f64 {
         self.seen.as_ref().map_or(self.proved, |seen| seen.mm)
     }
@@ -149,14 +149,14 @@ impl Proof {
     }
 }
 
-/// The questions of a proof: for each pair of mounts the least distance of their bodies. Each
-/// can be answered without the others, even on another machine.
+/// The questions of a proof: for each pair of mounts, the least distance of their bodies. They
+/// are independent, so each can be answered on another machine.
 pub struct Questions<'a> {
     assembly: &'a Assembly,
     guard: Guard<'a>,
     tasks: Vec<Task>,
-    /// True if some parts meet at the poses of the quick check. Then only the tasks with the
-    /// largest overlaps are kept.
+    /// True if the quick check found parts that meet. Then `tasks` holds only those with the
+    /// largest overlaps.
     seen: bool,
     joints: Vec<Solution>,
 }
@@ -171,7 +171,7 @@ pub struct Answer {
 }
 
 impl<'a> Questions<'a> {
-    /// The questions about some pairs of bodies.
+    /// Collects the questions about the pairs of bodies that `which` accepts.
     pub fn new(assembly: &'a Assembly, which: impl Fn(&Body, &Body) -> bool) -> Self {
         let guard = Guard::new(assembly.robot());
         let tasks = Task::all(assembly, &guard, ENOUGH, which);
@@ -210,10 +210,10 @@ impl<'a> Questions<'a> {
         Answer { pinned, nearest }
     }
 
-    /// Makes the proof. Answers that [`Questions::one`] gave elsewhere are taken from `known`,
-    /// by their index. The proof ends at the first parts that do not fit, unless the quick check has
-    /// found some: then each of its worst pairs is bounded. After parts that may not fit, the other
-    /// questions are answered with fewer regions, and not from `known`.
+    /// Answers all questions and makes the proof. `known` returns an answer that
+    /// [`Questions::one`] has already given for an index. The proof ends at the first parts that
+    /// do not fit, unless the quick check has found some: then each of its worst pairs is bounded.
+    /// After parts that may not fit, the rest is answered with fewer regions and without `known`.
     pub fn answer(
         &self,
         mut known: impl FnMut(usize) -> Option<Answer>,
@@ -245,7 +245,7 @@ impl<'a> Questions<'a> {
             } else {
                 proof.apart.push(near);
             }
-            // One clash is enough. Where parts barely fit, each question takes long.
+            // One clash is enough to refuse. Questions about parts that barely fit take long.
             match clash {
                 Some(Clash::Unsure(_)) => max = search::MAX_REGIONS / 10,
                 Some(_) if !self.seen => break,
@@ -270,7 +270,7 @@ impl Assembly {
         self.prove_some(|_, _| true, progress)
     }
 
-    /// The proof for some pairs of bodies only.
+    /// [`Assembly::prove`] for the pairs of bodies that `which` accepts.
     pub fn prove_some(
         &self,
         which: impl Fn(&Body, &Body) -> bool,
@@ -279,8 +279,8 @@ impl Assembly {
         Questions::new(self, which).answer(|_| None, progress)
     }
 
-    /// Takes the pinned pairs out of a task: pins in round holes whose centres coincide at
-    /// every pose, so that their gap never changes.
+    /// Removes the pinned pairs from a task and returns the one with the smallest gap. A pin and
+    /// its round hole have the same centre at every pose, so their gap never changes.
     fn take_joint(&self, task: &mut Task, poses: &[Solution]) -> Option<NearestPair> {
         let place = |pose| {
             let [a, b] = task.mounts.map(|mount| self.place(mount, pose));

@@ -158,7 +158,7 @@ fn the_lines_of_a_robot_are_read_and_are_those_that_set_it() {
 
 #[test]
 fn another_scale_or_sign_leaves_the_neutral_pulse_where_it_is() {
-    // Microseconds of the pulse at neutral: the trim by the scale and the sign.
+    // Change of the neutral pulse by the trim, us.
     let pulse = |servo: ServoSettings| {
         let sign = if servo.dir == '+' { 1.0 } else { -1.0 };
         sign * servo.trim * servo.scale
@@ -171,7 +171,7 @@ fn another_scale_or_sign_leaves_the_neutral_pulse_where_it_is() {
             };
             let scaled = servo.with_scale(scale);
             assert_eq!(scaled.scale, scale);
-            // A trim has hundredths.
+            // A trim is rounded to hundredths of a degree.
             assert!(
                 (pulse(scaled) - pulse(servo)).abs() <= 0.005 * scale + 1e-9,
                 "{scaled:?}"
@@ -207,7 +207,7 @@ fn calibrations_that_differ_in_anything_are_not_the_same_but_a_turn_is_no_differ
     assert!(turned.is_same(&calibration()));
 }
 
-/// Sends the lines of a transfer to a robot that refuses some; returns those sent, and if all were accepted in the end.
+/// Sends the lines of a transfer to a robot that refuses some. Returns those sent, and true if all were accepted.
 fn send(is_refused: impl Fn(&str, &[String]) -> bool) -> (Vec<String>, bool) {
     let (mut transfer, mut sent, mut accepted) =
         (Transfer::new(&calibration()), Vec::new(), Vec::new());
@@ -228,13 +228,13 @@ fn send(is_refused: impl Fn(&str, &[String]) -> bool) -> (Vec<String>, bool) {
 fn refused_lines_are_sent_again_after_the_others_and_once_more_from_robot_toml() {
     let lines = calibration().lines();
     assert_eq!(send(|_, _| false), (lines.clone(), true));
-    // A trim that is possible only after the limit.
+    // A trim that is accepted only after the limit.
     let (sent, is_done) = send(|line, accepted| {
         line.starts_with("trim 1") && !accepted.iter().any(|other| other.starts_with("limit 1"))
     });
     assert!(is_done);
     assert_eq!(sent[18..], ["trim 1 -3.25"]);
-    // A scale that is possible only from robot.toml's settings.
+    // A scale that is accepted only after `factory`, with robot.toml's settings.
     let needs_factory = |line: &str, accepted: &[String]| {
         line.starts_with("scale 2") && !accepted.iter().any(|other| other == "factory")
     };
@@ -242,7 +242,7 @@ fn refused_lines_are_sent_again_after_the_others_and_once_more_from_robot_toml()
     assert!(is_done);
     assert_eq!(sent[18..20], ["scale 2 10.00", "factory"]);
     assert_eq!(sent[20..], lines);
-    // A line that is never possible is given up.
+    // A line that is never accepted is given up after one more round from `factory`.
     let (sent, is_done) = send(|line, _| line.starts_with("limit 4"));
     assert!(!is_done);
     assert_eq!(

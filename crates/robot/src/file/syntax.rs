@@ -1,9 +1,8 @@
 //! The likely mistake in a line that is not TOML.
 //!
-//! A parser says which token it expected, in the words of its grammar. But the author has left
-//! out a value, or written a comma for the point or a unit behind a number, and wants to read
-//! that. So this module checks the line for such mistakes. If it finds none, the parser's
-//! message stays.
+//! A parser names the token that it expected, in the terms of its grammar. The author needs to
+//! read the mistake itself: a missing value, a decimal comma, or a unit after a number. So this
+//! module checks the line for such mistakes. If it finds none, the parser's message is kept.
 
 /// Makes the message for a mistake at byte `offset` of a text; `message` is the parser's own.
 pub fn explain_mistake(text: &str, offset: usize, message: &str) -> String {
@@ -19,7 +18,7 @@ pub fn explain_mistake(text: &str, offset: usize, message: &str) -> String {
         .unwrap_or_else(|| format!("this is not TOML: {message}"))
 }
 
-/// Removes the comment of a line, and blanks at its ends.
+/// Removes a line's comment, and the white space at both ends.
 fn without_comment(line: &str) -> &str {
     let mut quoted = None;
     let mut escaped = false;
@@ -36,7 +35,7 @@ fn without_comment(line: &str) -> &str {
     line.trim()
 }
 
-/// The name of the table if this line is its heading.
+/// The name of a table if this line is its heading; `None` for any other line.
 fn heading(line: &str) -> Option<&str> {
     line.strip_prefix('[')?.strip_suffix(']').map(str::trim)
 }
@@ -88,7 +87,7 @@ fn find_mistake_in_line(line: &str) -> Option<String> {
     number(value).or_else(|| word(value))
 }
 
-/// The message for a number that is not written as in TOML.
+/// The message for a number in a form that TOML does not allow; `None` for anything else.
 fn number(value: &str) -> Option<String> {
     let is_number =
         |text: &str| text.parse::<f64>().is_ok() && !text.starts_with(char::is_alphabetic);
@@ -125,7 +124,7 @@ fn number(value: &str) -> Option<String> {
     })
 }
 
-/// The message for a word without quotation marks.
+/// The message for a string without quotation marks; `None` for anything else.
 fn word(value: &str) -> Option<String> {
     let plain = |c: char| c.is_alphanumeric() || "_-. ".contains(c);
     let is_word = value.starts_with(char::is_alphabetic) && value.chars().all(plain);

@@ -1,5 +1,5 @@
-//! A gait as the four bars of a gait diagram, each showing when its foot stands: the form in
-//! which the page edits a gait and the search of `lizard tune` varies one.
+//! A gait as the four bars of a gait diagram: one per leg, from the start to the end of its
+//! stance. The page edits gaits in this form, and `lizard tune` varies them.
 
 use crate::gaits::gait::Gait;
 use crate::gaits::waveform::Waveform;
@@ -11,7 +11,8 @@ use crate::measures::servo::LEGS;
 pub struct Bars {
     /// Name of the gait in robot.toml.
     pub name: String,
-    /// True if the legs move one after the other and hold in between; false if they always move.
+    /// True if the legs swing one after the other and hold otherwise, with a common stance; false
+    /// if all legs always move.
     pub held: bool,
     /// Time of a cycle at full speed, s.
     pub period: f64,
@@ -22,13 +23,13 @@ pub struct Bars {
     /// Phase at which each stance begins, 0 to 1, in servo order: LF, RF, RH, LH. Only their
     /// order counts if legs hold.
     pub start: [f64; 4],
-    /// Each leg's share of the amplitude; negative if it runs against the others.
+    /// Each leg's amplitude as a share of `amplitude`; negative if it moves opposite to the others.
     pub gain: [f64; 4],
 }
 
 impl Bars {
-    /// Converts a moving gait to bars; `None` if it follows a path. A reversed gait becomes the bars
-    /// of the same movement.
+    /// Converts a gait to bars; `None` if a leg stands still or follows a path. A reversed gait
+    /// becomes the bars of the same movement.
     pub(crate) fn of(gait: &Gait) -> Option<Self> {
         let largest = |max: f64, leg: f64| max.max(leg.abs());
         let amplitudes = gait.strides.each_ref().map(|leg| leg.amplitude);
@@ -63,10 +64,10 @@ impl Bars {
 
     /// Reverses the gait in time, so that it walks back if this one walks ahead.
     ///
-    /// A wave's slow and fast part are each odd about their middle. So in reverse it is its own
-    /// negative, which begins where this one's stance ends. A held wave in reverse is the
-    /// negative of the one in the opposite order; that all four begin at another time makes no
-    /// difference.
+    /// A wave's stance and swing are each point-symmetric about their middle. So a wave played
+    /// backwards is the negated wave, whose stance begins where the original one ends. A held gait
+    /// played backwards is the negated gait with the opposite order of legs; all four legs are
+    /// shifted in time equally, which makes no difference.
     pub fn reversed(&self) -> Self {
         let start = |leg: usize| match self.held {
             true => 1.0 - self.start[leg],
@@ -78,7 +79,7 @@ impl Bars {
             ..self.clone()
         };
         if self.held {
-            // The places in the order become quarters of the cycle.
+            // Shift the starts so that the first leg in the order has 0.
             let first = reversed.start.into_iter().fold(f64::MAX, f64::min);
             reversed.start = reversed.start.map(|start| start - first);
         }

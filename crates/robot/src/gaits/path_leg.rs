@@ -6,7 +6,7 @@ use lizard_kinematics::{End, Lizard, Vector, wrap};
 use crate::gaits::path::Path;
 use crate::measures::servo::FORWARD;
 
-/// One of the two servos that move a point along its path.
+/// The motion of one of the two servos that move an end's point along its path.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PathLeg {
     lizard: Lizard,
@@ -18,7 +18,7 @@ pub struct PathLeg {
     neutral: f64,
 }
 
-/// Points per cycle at which a path is checked to be within reach.
+/// Number of points per cycle at which a path is checked to be within reach.
 const CHECKED: usize = 4096;
 
 impl PathLeg {
@@ -58,9 +58,9 @@ impl PathLeg {
     /// The leg's sweep from neutral at a phase of 0 to 1, deg, foot forward
     /// positive.
     pub fn sweep(&self, phase: f64) -> f64 {
-        // No point is out of reach: `pair` has refused such paths, and the check of
-        // every sample keeps the path's type-1 margins, which are zero at the edge of
-        // reach, far from zero.
+        // No point is out of reach: `pair` has refused such paths. Type-1 margins are
+        // zero at the edge of reach, and the check of every sample keeps those of the
+        // path far from zero.
         let angles = self
             .lizard
             .point_angles(self.end, self.path.at(phase))

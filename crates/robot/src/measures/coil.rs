@@ -17,7 +17,7 @@ pub struct Coil {
 }
 
 impl Coil {
-    /// The spring of the paper's size, with this wire.
+    /// A spring of the paper's size with a wire of this diameter, mm.
     pub const fn paper(wire: f64) -> Self {
         Self {
             wire,
@@ -44,8 +44,8 @@ impl Coil {
     }
 
     /// Initial tension: the force that opens the coils, N. Winding leaves a shear stress that falls with
-    /// the ratio of coil to wire C; makers reach 231 / e^(0.105 C) MPa, give or take
-    /// 6.9 (4 - (C - 3) / 6.5) MPa.
+    /// C, the ratio of the coil's mean diameter to the wire's. Makers reach 231 / e^(0.105 C) MPa, plus or
+    /// minus 6.9 (4 - (C - 3) / 6.5) MPa.
     pub fn initial_tension(&self) -> f64 {
         let ratio = self.mean() / self.wire;
         self.force_of(231.0 * (-0.105 * ratio).exp())

@@ -1,9 +1,9 @@
 //! The hips: the centres of the circles on which the feet move.
 //!
-//! A foot is fixed to its coupler, which moves without turning. So its circle is that of
-//! the crank's joint, shifted by the foot's place on the coupler: the hip has the same
-//! offset from the driven pivot as the foot from that joint. robot.toml gives at most two
-//! of pivot, foot and hip for each direction; the third follows.
+//! A foot is fixed to its coupler, which moves without turning. So the foot's circle is
+//! that of the crank's joint, shifted: the offset from the driven pivot to the hip equals
+//! the one from that joint to the foot. robot.toml gives at most two of pivot, foot and
+//! hip for each direction; the third follows.
 
 use lizard_contact::Feet;
 use lizard_kinematics::{End, Lizard, Vector};
@@ -46,7 +46,7 @@ impl Hips {
 
     /// Places the feet, and refuses hips that contradict pivot and foot.
     pub fn feet(&self, lizard: &Lizard, parts: &Parts, mount: f64) -> Checked<Feet> {
-        // Left and right are equal; head and tail may have different widths.
+        // Left and right are mirror images; head and tail may have different widths.
         let shafts = lizard.shafts();
         let [head, tail] = End::ALL.map(|end| {
             let [_, right] = end.servos();
@@ -87,7 +87,7 @@ mod tests {
 
     const LEG: &str = "[leg] ";
 
-    /// The paper's robot with other hips, and other parts.
+    /// The paper's robot with these lines in `[leg]` and in `[parts]`.
     fn robot(hips: &str, parts: &str) -> Result<Robot, String> {
         let leg = format!("[parts]\n{parts}\n[leg]\n{hips}\n#");
         with("paper", &[(LEG, &leg)]).map_err(|error| error.to_string())
@@ -100,7 +100,7 @@ mod tests {
 
     #[test]
     fn hips_follow_from_the_pivots_and_the_foot() {
-        // Exactly: no result of the paper's robot may depend on a last digit.
+        // Compared exactly: no result of the paper's robot may depend on the last digit.
         assert_eq!(hips("", ""), (55.0, [35.0; 2]));
         assert_eq!(hips("", "pivot = [30.0, 8.0]"), (57.0, [36.5; 2]));
         assert_eq!(hips("", "foot = [1.5, -0.5]"), (58.0, [40.0; 2]));

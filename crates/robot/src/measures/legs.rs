@@ -1,15 +1,15 @@
-//! The legs seen from above: their pivots, the coupler with the foot, and the strut by which
-//! the servo pulls the leg along.
+//! The legs seen from above: their pivots, the coupler with the foot, and the strut through
+//! which the servo drives the leg.
 //!
 //! The paper's figures do not show the legs' pivots. Only the circle of the foot matters for
-//! walking. A parallelogram carries its coupler without turning it, so the two pivots may be
-//! moved together to where there is room, if the foot is moved on the coupler by the same
-//! distance in the opposite direction. The driven pivot keeps away from the
-//! servo, whose link would sweep over it. The strut between them is the coupler of a
-//! second parallelogram: shaft, pivot and two equal anchor arms.
+//! walking. A parallelogram moves its coupler without turning it. So the two pivots may be
+//! moved together to a place with room, if the foot is moved on the coupler by the same
+//! distance in the opposite direction. The driven pivot lies away from the servo, whose
+//! link would sweep over it. The strut joins the servo's link to the leg; it is the coupler
+//! of a second parallelogram: shaft, driven pivot and two equal anchor arms.
 //!
 //! A hip is the centre of a foot's circle. At neutral the foot is straight beside it,
-//! swept by `mount`.
+//! turned by the leg's sweep angle `mount`.
 
 use lizard_contact::{FRONT, Feet, LEFT, Point};
 use lizard_kinematics::{Lizard, Vector};
@@ -36,18 +36,18 @@ pub struct LegPlan {
     /// The foot in the coupler's frame, mm: from the crank's joint along the coupler,
     /// and across it counter-clockwise.
     pub foot: Vector,
-    /// From the shaft to the driven pivot, length one.
+    /// Unit vector from the shaft to the driven pivot, the direction of the strut.
     pub strut: Vector,
     /// Length of the strut from anchor to anchor while the leg does not lag, mm.
     pub strut_length: f64,
-    /// The strut's anchor in the frame of the servo's link, and in that of the leg, mm.
+    /// The strut's anchor, mm: the same in the frames of the servo's link and of the leg.
     pub anchor: Vector,
 }
 
-/// A leg at a pose; points in mm, chassis frame.
+/// The points of a leg at a pose, mm, chassis frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LegPlace {
-    /// The driven crank's pivot and the follower's.
+    /// The pivots on the chassis: the driven crank's and the follower's.
     pub pivots: [Vector; 2],
     /// The joints of both cranks with the coupler, which carries the foot.
     pub joints: [Vector; 2],
@@ -58,7 +58,7 @@ pub struct LegPlace {
 }
 
 impl LegPlan {
-    /// Plans the leg of a servo (0 to 3) with this neutral angle (deg, chassis frame).
+    /// Computes the leg of a servo (0 to 3) with this neutral angle (deg, chassis frame).
     pub(crate) fn new(
         servo: usize,
         neutral: f64,
@@ -124,7 +124,7 @@ fn driven(servo: usize, parts: &Parts) -> Vector {
     outward(servo, parts.pivot)
 }
 
-/// Converts a distance outward and one towards the middle, at a servo, to the chassis frame.
+/// Converts distances outward and towards the middle, at a servo, to the chassis frame.
 pub(crate) fn outward(servo: usize, [outward, inward]: [f64; 2]) -> Vector {
     Vector::new(-LEFT[servo] * outward, -FRONT[servo] * inward)
 }

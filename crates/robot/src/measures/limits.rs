@@ -9,7 +9,7 @@ use crate::measures::servo::SpeedLimits;
 /// The smallest speed limit, deg/s: a slower move would overflow the firmware's count of frames.
 const MIN_SPEED: f64 = 10.0;
 
-/// Reads `[limits]`.
+/// Reads `[limits]`: margins, the sliders' stroke, and servo speeds.
 pub(crate) fn read(root: &Section) -> Checked<(Limits, SpeedLimits)> {
     let section = root.section(
         "limits",
@@ -24,7 +24,7 @@ pub(crate) fn read(root: &Section) -> Checked<(Limits, SpeedLimits)> {
         ],
     )?;
     let limits = Limits {
-        // The core's tables of the couplers end at 0.1.
+        // The core's coupler tables end at a margin of 0.1.
         type2: section.number("type2", 0.1, 0.95, "(a sine)")?,
         type1: section.number("type1", 0.0, 0.95, "(a sine)")?,
         leg: section.number("leg", 0.0, 0.95, "(a sine)")?,

@@ -3,7 +3,7 @@
 //! The links' lengths place the joints. This table has the width and the thickness of the
 //! parts that hold the joints, and the measures of parts from a shop: servos, screws, springs, a
 //! board, a battery. None of it moves a joint, so the firmware does not depend on it. The
-//! places of the feet do, see `hips.rs`. All keys may be left out.
+//! places of the feet depend on it, see `hips.rs`. Every key is optional.
 
 use crate::file::{Checked, Section};
 use crate::measures::coil::Coil;
@@ -11,7 +11,7 @@ use crate::measures::coil::Coil;
 /// Measures of the parts, mm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parts {
-    /// Air on each side between a part and another that is pushed into it or slides in it.
+    /// Clearance on each side of a part that is pushed into another one or slides in it.
     pub fit: f64,
     /// Least thickness of a printed wall.
     pub wall: f64,
@@ -21,16 +21,16 @@ pub struct Parts {
     pub thickness: f64,
     /// Thickness of the chassis plate and of the deck.
     pub plate: f64,
-    /// Air between parts that pass over each other.
+    /// Clearance between parts that pass over each other.
     pub gap: f64,
-    /// Width of the cut of a laser or a cutter.
+    /// Width of the cut that a laser or another cutter makes.
     pub kerf: f64,
     /// The leg's driven pivot on the chassis, from its servo's shaft: outward and towards the
     /// middle. The follower's pivot is a ground link further out.
     pub pivot: [f64; 2],
     /// The foot's place on its coupler, from the crank's joint: outward and towards the middle.
-    /// The hip, the centre of the foot's circle, has the same offset from the driven pivot. None
-    /// if it is left out; [`crate::LegPlan`] then has the place that follows.
+    /// The hip, the centre of the foot's circle, has the same offset from the driven pivot. `None`
+    /// if it is left out; [`crate::LegPlan`] then has the computed place.
     pub foot: Option<[f64; 2]>,
     /// The strut's anchor on the servo's link and, in parallel, on the leg: distance from the
     /// shaft, and angle (deg) from the crank, away from the arm.
@@ -45,8 +45,8 @@ pub struct Parts {
     pub screw: Screw,
     /// The pads on which the robot stands.
     pub pad: Pad,
-    /// Width of a strip with a grain, as of climbing skin, along each pad from head to tail; 0 leaves
-    /// it out.
+    /// Width of a strip that slides more easily one way, such as climbing skin, along each pad from
+    /// head to tail; 0 leaves it out.
     pub strip: f64,
     /// The legs' springs, which are mounted in their struts.
     pub spring: Coil,
@@ -59,7 +59,7 @@ pub struct Parts {
     pub head: f64,
 }
 
-/// Defines the measures of a part: lengths above 0 with their defaults, mm, and the reader of
+/// Defines the measures of a part: lengths of 0.1 to 200 mm with their defaults, and the reader of
 /// their table, in which any key may be left out.
 macro_rules! measures {
     ($($(#[$doc:meta])* $type:ident in $table:literal {
@@ -107,7 +107,7 @@ measures! {
         shaft: 6.1,
         /// Height of the boss around the shaft.
         boss: 26.5,
-        /// Distance of the two screws in the flange.
+        /// Distance between the two screws in the flange.
         holes: 27.8,
     }
 
@@ -139,21 +139,21 @@ measures! {
         nut_height: 4.0,
     }
 
-    /// A pad under a foot, round and with a dome below, mm. A dome slides up an edge that stops a
+    /// A round pad under a foot, with a dome below, mm. A dome slides up an edge that would stop a
     /// flat pad.
     Pad in "pad" {
-        /// Radius of the dome, which is a part of a ball.
+        /// Radius of the sphere of which the dome is a part.
         radius: 30.0,
-        /// Diameter. It and the radius set the height of the edges that the dome slides up.
+        /// Diameter of the pad. With `radius` it determines the height of the dome.
         width: 22.0,
-        /// Height in all.
+        /// Total height.
         height: 4.0,
     }
 }
 
 impl Pad {
-    /// Height of the dome, mm, and so of the highest edge that it can slide up; `None` for a pad
-    /// that is wider than the ball.
+    /// Height of the dome, mm, which is that of the highest edge that it can slide up; `None` for
+    /// a pad that is wider than the sphere.
     pub fn dome(&self) -> Option<f64> {
         let half = self.width / 2.0;
         (half <= self.radius)
@@ -211,7 +211,7 @@ const KEYS: [&str; 20] = [
     "head",
 ];
 
-/// Reads the spring of the struts; its lengths have the range of other parts.
+/// Reads the spring of the struts; its lengths have the range of other parts: 0.1 to 200 mm.
 fn read_coil(parts: &Section, default: Coil) -> Checked<Coil> {
     if !parts.has("spring") {
         return Ok(default);
@@ -225,7 +225,7 @@ fn read_coil(parts: &Section, default: Coil) -> Checked<Coil> {
     })
 }
 
-/// The table that replaces `[parts] strut`.
+/// The table that replaces the former key `[parts] strut`, for the message to its user.
 const STRUT: &str = "[leg.drive] with kind = \"strut\" or \"rigid\"";
 
 impl Parts {

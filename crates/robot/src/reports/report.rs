@@ -1,4 +1,4 @@
-//! The figures of every gait: the table that `make firmware` and `lizard gaits` print.
+//! The table of every gait's figures, which `make firmware` and `lizard gaits` print.
 
 use std::fmt;
 
@@ -20,22 +20,22 @@ pub struct Row {
     pub period: f64,
     /// Margins, strokes and the fastest frame.
     pub audit: Audit,
-    /// Error of its tables over all 65 536 phases.
+    /// Error of the gait's tables over all 65 536 phases.
     pub error: TableError,
-    /// Movement of one cycle by the contact model.
+    /// Movement in one cycle with ideal servos, by the contact model.
     pub movement: Prediction,
     /// Effect of the legs' drive; `None` if legs are rigid without play.
     pub spring_cost: Option<SpringCost>,
-    /// The largest share of its line that a servo uses, on the servos' own supply.
+    /// Largest share of its torque-speed line that a servo uses, at the servos' own supply.
     pub line: f64,
-    /// Movement of one cycle with the servos as they are.
+    /// Movement in one cycle with the servos' limited torque and speed.
     pub driven: Prediction,
 }
 
 impl Row {
-    /// True for a gait that walks, and not only moves a little while it looks around, with slow steps.
+    /// True for a gait that travels, but whose fastest servo stays below [`SLOW`].
     fn is_slow(&self) -> bool {
-        /// Least speed of a gait that walks: mm/s ahead, deg/s of turn.
+        /// Smallest speed of a gait that travels: mm/s ahead, deg/s of turn.
         const WALKS: (f64, f64) = (5.0, 2.0);
         let speed = |part: Option<f64>| part.unwrap_or_default().abs() / self.period;
         let movement = &self.movement;
@@ -49,7 +49,7 @@ impl Row {
 pub struct Report {
     /// Rows of the table, in the order of the file.
     pub rows: Vec<Row>,
-    /// The routines, in the order of the file.
+    /// Figures of the routines, in the order of the file.
     pub rounds: Vec<Round>,
     /// Hash of the tables.
     pub hash: u32,
@@ -57,13 +57,13 @@ pub struct Report {
     pub waves: usize,
     /// Bytes of the robot's section in flash; at most [`SPACE`].
     pub flash: usize,
-    /// True if a line that names a gait may make a frame late.
+    /// True if the search for a gait's name may make a frame late.
     pub searches_long: bool,
     /// Name of the robot.
     pub name: String,
 }
 
-/// CPU cycles that the main loop may spend on a line without making a frame late: docs/firmware.md.
+/// CPU cycles that the main loop may spend on a console line without making a frame late: docs/firmware.md.
 const BESIDE_A_FRAME: usize = 34_000;
 
 /// The note for a robot whose console takes longer to find a gait's name.
@@ -74,11 +74,11 @@ const SEARCHES_LONG: &str = "many gaits: `cal`, or a line that names one, may ma
 pub const UNDECIDED: &str =
     "- undecided: two feet against two, where the smallest difference between the pads decides\n";
 
-/// Rate of the fastest servo, deg/s, below which a gait counts as slow: in MuJoCo, `walk` and its kin keep nine
-/// tenths of their way at an edge of 2 mm, and those below lose up to a third.
+/// Rate of the fastest servo, deg/s, below which a gait counts as slow. At an edge of 2 mm in MuJoCo, `walk` and
+/// similar gaits keep nine tenths of their distance; slow ones lose up to a third.
 const SLOW: f64 = 200.0;
 
-/// The note for routines with inputs, which depend on walls and fingers.
+/// The assumptions behind the figures of routines with inputs.
 pub const WITHOUT_CONTACTS: &str =
     "inputs: no contact closes; a wait takes one frame, a gait without an end one cycle\n";
 
@@ -253,7 +253,7 @@ impl fmt::Display for Report {
     }
 }
 
-/// The warning for a gait that leaves its servos little or nothing.
+/// The warning for a gait that leaves its servos little reserve or none.
 fn tight(name: &str, line: f64) -> String {
     let meaning = match line < 1.0 {
         true => "little is left for play, a cold gear or a long wire",
@@ -264,7 +264,7 @@ fn tight(name: &str, line: f64) -> String {
     )
 }
 
-/// The width of a column for these names.
+/// The width of a column for these names, at least 12.
 pub(crate) fn widest<'a>(names: impl Iterator<Item = &'a str>) -> usize {
     names.map(str::len).fold(12, usize::max)
 }
@@ -277,7 +277,7 @@ pub(crate) fn known(part: Option<f64>, decimals: usize) -> String {
     }
 }
 
-/// Rounds a value, without the sign of a zero.
+/// Rounds a value; a zero loses its sign.
 fn tidy(value: f64, decimals: i32) -> f64 {
     let scale = 10f64.powi(decimals);
     // Adding positive zero turns a negative one positive.
@@ -327,7 +327,7 @@ mod tests {
             "turn-slowly-to-the-right",
         ];
         assert_eq!(slow(robot("own-gaits")), turns);
-        // Such gaits lose 16 to 34 % of their way.
+        // Such gaits lose 16 to 34 % of their distance.
         let own = with(
             "own-gaits",
             &[

@@ -1,8 +1,8 @@
-//! `make trouble`: many scenarios of trouble on the simulated UNO, with progress, a
-//! summary by activity, and every scenario that fails as a script.
+//! `make trouble`: plays many random scenarios of trouble on the simulated UNO. It prints
+//! progress, a summary by activity, and the first failing scenarios as scripts.
 //!
-//! SEED and COUNT choose them; ONLY plays one of the seed alone. Run it from the folder
-//! `host`.
+//! SEED and COUNT choose the scenarios; ONLY plays just the one with this number. `make` runs
+//! it in the folder `crates`.
 
 use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
@@ -68,7 +68,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Plays one scenario and prints its events.
+/// Plays one scenario, and prints its events and the broken rules.
 fn play_scenario(image: &Image, seed: u64, number: u64) -> ExitCode {
     let scenario = Scenario::of(seed, number, patrolling());
     print!("{scenario}");
@@ -77,7 +77,7 @@ fn play_scenario(image: &Image, seed: u64, number: u64) -> ExitCode {
     for (at, event) in events(&record) {
         let is_reported = match event {
             Event::Byte | Event::Pass => false,
-            // Only the first after the servo had none.
+            // Only a servo's first pulse after more than 30 ms without one.
             Event::Pulse(pulse) => {
                 let before = std::mem::replace(&mut last[pulse.servo], at);
                 at - before > 30 * MS

@@ -24,7 +24,7 @@ impl World {
             }
             let step = self.running.main.step(&mut self.running.board);
             if step != Step::Worked || self.running.board.memory.was_polled_busy() {
-                // It is read when main has time.
+                // Main reads the line later, when it has time.
                 break;
             }
         }
@@ -38,7 +38,7 @@ impl World {
         self.listen(self.now)
     }
 
-    /// Sends a line that the robot's receiver reads at another rate.
+    /// Sends a line at another rate than that of the robot's receiver.
     pub(super) fn say_at_another_rate(&mut self) -> Verdict {
         let before = self.settled();
         self.running.board.send(&UNREADABLE);
@@ -51,7 +51,7 @@ impl World {
         Ok(())
     }
 
-    /// Checks that the robot finds the rate at which it is asked, and answers.
+    /// Checks that the robot finds the sender's rate and answers, if it is asked repeatedly.
     pub(super) fn is_found(&self) -> Verdict {
         let mut asked = self.running.clone();
         asked.board.transmitter.is_held = false;
@@ -99,7 +99,7 @@ impl World {
             return broken(Rule::Refused, text.clone());
         }
         if answer.starts_with("ok gait=") {
-            // This answer is judged when it is printed.
+            // The answer to `status` is judged when it is printed.
             return Ok(());
         }
         self.known += 1;
@@ -111,7 +111,7 @@ impl World {
     /// Passes the robot's lines to the observer; they were decided at `since` or later.
     pub(super) fn listen(&mut self, since: Time) -> Verdict {
         let text = std::mem::take(&mut self.running.board.transmitter.text);
-        // The longest line may have been printed only in part.
+        // The last line may have been printed only in part.
         let (whole, rest) = text.rsplit_once("\r\n").unwrap_or(("", &text));
         rest.clone_into(&mut self.running.board.transmitter.text);
         for line in whole.split("\r\n").filter(|line| !line.is_empty()) {
@@ -127,7 +127,7 @@ impl World {
         self.look_ahead()
     }
 
-    /// Tells the observer about `boot` although nobody reads the output.
+    /// Passes the robot's `# boot: ` lines to the observer while the transmitter holds them.
     pub(super) fn predict_boot(&mut self) {
         let mut clone = self.running.clone();
         clone.board.transmitter.is_held = false;

@@ -4,7 +4,7 @@ import { nameOf, type SelectedServo } from './drawing';
 import { button, note, number, row, words } from '../make';
 import type { Step, Tools } from './step';
 
-/** Turn of a servo for each press, deg. */
+/** Turn of the servo per press of a button, deg. */
 const STEP = 5;
 
 export class Limits implements Step {
@@ -12,7 +12,7 @@ export class Limits implements Step {
   readonly title = 'Limit their travel';
   readonly needsRobot = true;
   readonly isByServo = true;
-  /** The angle that a servo was turned to, deg; null while it stands. */
+  /** The servo turned last, and its angle in deg; null while the robot stands. */
   private at: { servo: number; degrees: number } | null = null;
 
   forget(): void {

@@ -1,4 +1,4 @@
-//! The page's robot, without a browser.
+//! Tests of the page's robot, without a browser.
 
 use lizard_robot::Travel;
 
@@ -55,8 +55,8 @@ fn servos_have_their_dead_band_and_their_rate_and_ideal_ones_neither() {
     };
     // 4 us are less than half of its dead band of 10 us.
     near(turned(&mut page, 64), [0.0, 0.4]);
-    // 20 deg: less than 10 in a frame of 20 ms at 500 deg/s, because its rotor spins up; then to
-    // within its dead band and the error at which it bears its pad.
+    // A step of 20 deg: less than 10 in the first 20 ms at 500 deg/s, as the rotor must spin up;
+    // then to within the dead band and the error at which the servo carries its pad.
     let (first, _) = turned(&mut page, 3200);
     assert!((1.0..10.0).contains(&first), "{first}");
     for _ in 0..20 {
@@ -71,8 +71,8 @@ fn servos_have_their_dead_band_and_their_rate_and_ideal_ones_neither() {
     near(turned(&mut page, 0), [0.0, 0.0]);
 }
 
-/// Follows the second cycle of a gait with ideal servos: its movement, the slides of the feet in
-/// each frame, and the largest lag.
+/// Follows two cycles of a gait with ideal servos. Returns the movement of the second one, the
+/// slides of the feet in each of its frames, mm, and its largest lag.
 fn cycle(page: &mut Page, name: &str, frames: u32) -> (Travel, Vec<[f64; 4]>, f64) {
     page.set_servos("ideal");
     let gait = page.robot().and_then(|robot| robot.gait(name)).expect(name);
@@ -125,8 +125,8 @@ fn servos_with_a_dead_band_are_predicted_to_lose_it() {
     let sg90 = forward(&page).expect("decided");
     page.set_servos("ideal");
     let ideal = forward(&page).expect("decided");
-    // A degree of 40, as crates/twin/tests/stream.rs has it; and up to 2 % where the samples of a
-    // waveform cut its corners, which ideal servos are predicted without.
+    // The loss is 1 deg of 40, as in crates/twin/tests/stream.rs, and up to 2 % where the samples
+    // of a waveform cut its corners; the prediction for ideal servos has no such samples.
     assert!((sg90 / ideal - 39.0 / 40.0).abs() < 0.02, "{sg90} {ideal}");
     page.set_servos("copy");
     let copy = page.predict(walk).expect("decided");
@@ -139,7 +139,7 @@ fn servos_with_a_dead_band_are_predicted_to_lose_it() {
     for (copy, own) in copy.into_iter().zip(own) {
         assert!(copy > 1.3 * own, "a weaker servo uses more: {copy} {own}");
     }
-    // docs/gaits.md has these two, of half the pace and of all of it, and that of 4 V.
+    // docs/gaits.md has these two values, for half and full pace, and the one for 4 V below.
     assert!(
         (own[9] - 0.45).abs() < 0.005 && (own[19] - 0.72).abs() < 0.005,
         "{own:?}"
@@ -147,7 +147,7 @@ fn servos_with_a_dead_band_are_predicted_to_lose_it() {
     page.set_servos("own at 4.0");
     let weak = page.predict(walk).and_then(|movement| movement.lines);
     assert!((weak.expect("shares")[19] - 0.87).abs() < 0.005, "{weak:?}");
-    // No such supply: nothing changes.
+    // An unknown supply changes nothing.
     page.set_servos("own at 12");
     page.set_servos("own at a wall");
     assert_eq!(page.predict(walk).and_then(|movement| movement.lines), weak);

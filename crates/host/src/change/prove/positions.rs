@@ -13,7 +13,7 @@ pub struct Positions {
     pub degrees: Vec<f64>,
     /// The crank's direction in the frame of its end, Q15.
     pub fixed: Vec<Direction>,
-    /// The crank's direction in floating point.
+    /// The crank's direction in the frame of its end, in floating point.
     pub exact: Vec<Vector>,
 }
 

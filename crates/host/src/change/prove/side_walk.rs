@@ -1,5 +1,5 @@
-//! The pairs of positions of a side, and the positions of a leg, decided by the guard and by
-//! geometry.
+//! Compares the guard's decisions with exact geometry: at the pairs of crank positions of a side,
+//! and at the positions of a leg.
 
 use lizard_core::guard::trig::Direction;
 use lizard_core::numbers::cells::Cells;
@@ -11,7 +11,7 @@ use super::positions::Positions;
 use super::rows::{PairSample, columns, eight_by_eight, lanes, rows_of, sine, splat};
 use super::tally::{MARGIN_BAND, STEPS_BAND, Tally};
 
-/// The comparison of all pairs of a side.
+/// Compares the guard with geometry at the pairs of one side.
 pub struct SideWalk<'a> {
     side: Side,
     cells: Cells<'a>,
@@ -54,7 +54,7 @@ impl<'a> SideWalk<'a> {
             let crank = in_side_frame(front.fixed[row]);
             let front_arm = splat(self.side.front_arm(front.exact[row]));
             eight_by_eight(columns(share, row, rear.fixed.len()), |eight, count| {
-                // Positions are in the frame of their end, arms in the chassis'.
+                // Positions are in the frame of their end, arms in the frame of the chassis.
                 let crank_rear = End::Tail.mirror(lanes(&rear.exact, eight));
                 let pose = self.exact.shape(self.side.rear_arm(crank_rear), front_arm);
                 let (Lanes(d), Lanes(s)) = (pose.d, pose.s);
@@ -92,7 +92,7 @@ impl<'a> SideWalk<'a> {
     }
 }
 
-/// The positions of one leg.
+/// Compares the guard with geometry at all positions of one leg.
 pub fn leg(robot: &Robot, guard: &CoreRobot, positions: &Positions) -> Tally {
     let mut tally = Tally::default();
     let min = guard.limits().leg.0;

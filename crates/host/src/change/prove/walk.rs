@@ -11,10 +11,10 @@ use super::rows::{CUTS, PairSample};
 use super::side_walk::{SideWalk, leg};
 use super::tally::{Finding, MARGIN_BAND, Tally};
 
-/// Pieces of the whole walk: of both ends and of both sides.
+/// Number of pieces of the whole walk: [`CUTS`] for each end and each side.
 pub const PIECES: usize = 4 * CUTS;
 
-/// The walk of a robot's pairs with a guard; values that all pieces need are computed once.
+/// A walk over a robot's pairs that checks a guard; computes values for all pieces once.
 pub struct Walk<'a> {
     robot: &'a Robot,
     guard: &'a CoreRobot,
@@ -25,7 +25,7 @@ pub struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
-    /// The walk through a share of the pairs.
+    /// Makes a walk over a sample of the pairs.
     pub fn new(robot: &'a Robot, guard: &'a CoreRobot, share: PairSample) -> Self {
         Self {
             robot,
@@ -89,7 +89,7 @@ pub fn findings(robot: &Robot, guard: &CoreRobot, pieces: Vec<Tally>) -> Vec<Fin
     findings
 }
 
-/// The widest band of the robot's ends: see [`margin_band`].
+/// The wider margin band of the robot's two ends, a sine; at least [`MARGIN_BAND`].
 pub fn widest_band(robot: &Robot) -> f64 {
     End::ALL
         .map(|end| bands(robot, end)[0])
@@ -97,7 +97,7 @@ pub fn widest_band(robot: &Robot) -> f64 {
         .fold(MARGIN_BAND, f64::max)
 }
 
-/// The number of rows to check.
+/// The number of rows to check: positions of the first servo of each end and side.
 pub fn rows(guard: &CoreRobot) -> u64 {
     let positions = |servo: usize| {
         let calibration = guard.calibration()[servo];

@@ -1,4 +1,4 @@
-//! Opening a board: from the command's arguments to its first line.
+//! Connecting to a board: from the command's arguments to the board's first line.
 
 use std::path::PathBuf;
 
@@ -28,8 +28,8 @@ pub struct Connect {
     robot: Option<PathBuf>,
 }
 
-/// The location of the board. It is searched again on each call, because a board that is
-/// plugged in again may get another port.
+/// A finder of the board's port. Unless the user named a port, each `open` searches anew, because
+/// a board that is plugged in again may get another port.
 #[derive(Debug)]
 pub struct BoardFinder {
     port: Option<String>,
@@ -47,10 +47,10 @@ pub struct Connection {
 }
 
 impl Connect {
-    /// Chooses the place to look for the board; starts the simulated UNO if it is selected.
+    /// Makes the finder that these arguments ask for; starts the simulated UNO for `--sim`.
     ///
     /// # Errors
-    /// Fails if there is no firmware for it, or no pseudo terminal.
+    /// Fails if the simulated UNO has no robot, firmware or pseudo terminal, or is not built in.
     pub fn finder(self, command: &'static str) -> Result<BoardFinder, Failure> {
         if self.sim {
             let robot = RobotFile::at(self.robot);
@@ -113,7 +113,7 @@ impl BoardFinder {
             None => {
                 let port = find::choose(&find::usb_ports(), self.command)
                     .map_err(|error| Failure::Impossible(error.to_string()))?;
-                // The board chooses its name, so it is made safe to print.
+                // The product name comes from the board, so it is made safe to print.
                 (port.name.clone(), plain(&port.to_string()))
             }
         };
@@ -123,10 +123,10 @@ impl BoardFinder {
         })
     }
 
-    /// Opens the port, says on standard error which, and waits for the banner.
+    /// Opens the port, prints its name on standard error, and waits for the banner.
     ///
     /// # Errors
-    /// Fails as [`Finder::open`] does, or if no lizard answers.
+    /// Fails as [`BoardFinder::open`] does, or if no lizard answers.
     pub fn open_and_greet(&self) -> Result<(Connection, Option<String>), Failure> {
         let mut board = self.open()?;
         eprintln!("lizard: waiting for the board at {}", board.name);
@@ -134,7 +134,7 @@ impl BoardFinder {
         Ok((board, banner))
     }
 
-    /// True if the board is a simulated one, which ends with this program.
+    /// True if the board is simulated, so that it ends with this program.
     pub fn is_simulated(&self) -> bool {
         #[cfg(all(feature = "simulator", target_os = "linux"))]
         let simulated = self.simulated.is_some();

@@ -1,15 +1,15 @@
-//! `deadman` while a person drives.
+//! Sets the robot's `deadman` while a person drives.
 //!
-//! A robot that is out of reach would walk on. So while a person drives it, `deadman` is set:
-//! it ends a gait by itself when no line has come for that long. When the gait has ended, and
-//! when the program leaves, the robot gets its own setting back.
+//! A robot that is out of reach would walk on. So while a person drives it, `deadman` is
+//! set: the robot ends a gait by itself when no line has come for that time. When the gait
+//! has ended, and when the program ends, the robot gets its own setting back.
 
 use std::time::Duration;
 
 use lizard_core::console::word::Word;
 
-/// `deadman` while a person drives, ms. A person sets round numbers, so this one was left by a
-/// program that was ended.
+/// `deadman` while a person drives, ms. People set round numbers: a robot that has this one
+/// got it from a program that ended without restoring the setting.
 const DRIVEN_MS: u16 = 901;
 /// Time between two lines that keep the robot walking: two of three may be lost, and a
 /// robot's own setting may be somewhat shorter.
@@ -20,7 +20,7 @@ pub(super) const LINE: Duration = Duration::from_millis(200);
 pub(super) enum Step {
     /// Read the robot's own setting.
     Read,
-    /// Set it.
+    /// Set `deadman` for driving.
     Set,
     /// Restore the robot's own setting for the next line only.
     Lend,
@@ -55,7 +55,7 @@ impl Deadman {
         }
     }
 
-    /// The line of a step, if there is one.
+    /// The console's line for a step.
     pub(super) fn line(&mut self, step: Step) -> Option<String> {
         let own_ms = self.own.unwrap_or(0);
         let ms = match step {
@@ -71,7 +71,7 @@ impl Deadman {
         Some(format!("deadman {ms}"))
     }
 
-    /// Takes a line of the answer to its own `cal`; true if it is one.
+    /// Reads a line of the answer to `cal`; returns false if it is no such line.
     pub(super) fn take_answer_line(&mut self, line: &str) -> bool {
         if let Some(ms) = line
             .strip_prefix("# deadman ")

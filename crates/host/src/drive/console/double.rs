@@ -14,7 +14,7 @@ use super::link::{Link, Timeouts};
 pub struct Double {
     running: Running,
     out: VecDeque<u8>,
-    /// Every line that it has received.
+    /// All text that the link has sent to the robot.
     pub sent: String,
 }
 
@@ -23,10 +23,10 @@ pub fn robot() -> Link<Double> {
     robot_of(PAPER)
 }
 
-/// The paper's robot.
+/// The robot.toml of the paper's robot.
 pub const PAPER: &str = include_str!("../../../../../robots/paper.toml");
 
-/// A connection to the robot of this robot.toml.
+/// A connection to the robot of this robot.toml, its banner already read.
 pub fn robot_of(text: &str) -> Link<Double> {
     let robot = Robot::parse(text).expect("its robot.toml is right");
     let mut link = Link::new(Double::of(&robot), Timeouts::default());
@@ -43,7 +43,7 @@ impl Double {
         }
     }
 
-    /// Collects the robot's output.
+    /// Moves the robot's pending output into `out`.
     fn collect(&mut self) {
         self.running.settle();
         let text = &mut self.running.board.transmitter.text;

@@ -2,8 +2,8 @@
 
 use serialport::{SerialPortInfo, SerialPortType};
 
-/// Vendors whose USB chips are on UNOs and their copies: Arduino under two numbers,
-/// and WCH, the maker of the CH340.
+/// USB vendor IDs of the chips on UNOs and their copies: Arduino's two, and that of
+/// WCH, the maker of the CH340.
 const VENDORS: [u16; 3] = [ARDUINO[0], ARDUINO[1], 0x1a86];
 pub(in crate::drive) const ARDUINO: [u16; 2] = [0x2341, 0x2a03];
 
@@ -12,9 +12,9 @@ pub(in crate::drive) const ARDUINO: [u16; 2] = [0x2341, 0x2a03];
 pub struct UsbPort {
     /// The name of the port, such as /dev/ttyACM0 or COM3.
     pub name: String,
-    /// The number of the vendor of its chip.
+    /// The USB vendor ID of its chip.
     pub vendor: u16,
-    /// The number that the vendor gave to the chip.
+    /// The USB product ID of its chip.
     pub product_id: u16,
     /// The product name that the chip reports.
     pub product: Option<String>,
@@ -43,8 +43,8 @@ pub enum FindError {
     },
 }
 
-/// The USB serial ports of this machine. Others, such as those of a mainboard, have
-/// to be named.
+/// The USB serial ports of this machine, sorted by name. The user has to name other
+/// ports, such as those of a mainboard.
 pub fn usb_ports() -> Vec<UsbPort> {
     let mut ports: Vec<UsbPort> = serialport::available_ports()
         .unwrap_or_default()
@@ -59,7 +59,7 @@ fn usb(port: SerialPortInfo) -> Option<UsbPort> {
     let SerialPortType::UsbPort(usb) = port.port_type else {
         return None;
     };
-    // macOS lists each port twice; this one waits for a modem's carrier.
+    // macOS lists each port twice; opening this entry would wait for a modem's carrier.
     if port.port_name.starts_with("/dev/tty.") {
         return None;
     }
@@ -72,7 +72,7 @@ fn usb(port: SerialPortInfo) -> Option<UsbPort> {
 }
 
 impl UsbPort {
-    /// True if the chip has one of Arduino's vendor numbers.
+    /// True if the chip has one of Arduino's vendor IDs.
     pub fn is_arduinos(&self) -> bool {
         ARDUINO.contains(&self.vendor)
     }

@@ -25,7 +25,7 @@ pub enum PromptEvent {
 pub struct Prompt {
     input: Input,
     history: Vec<String>,
-    /// The index in the history; its length stands for the line being typed.
+    /// The index of the shown line in the history; the history's length for the line being typed.
     at: usize,
     /// The unfinished line, while an older one is shown.
     draft: String,
@@ -41,7 +41,7 @@ impl Prompt {
         }
     }
 
-    /// Handles a key.
+    /// Handles a key, and returns its effect.
     pub fn press_key(&mut self, key: KeyEvent) -> PromptEvent {
         if key.kind == KeyEventKind::Release {
             return PromptEvent::Edited;
@@ -121,14 +121,14 @@ impl Prompt {
         self.input.value()
     }
 
-    /// The part of it that fits in `width` columns, and the cursor's column in it.
+    /// The part of the text that fits in `width` columns, and the cursor's column in it.
     pub fn view(&self, width: usize) -> (String, usize) {
         let scroll = self.input.visual_scroll(width.max(1));
         let visible = self.text().chars().skip(scroll).take(width).collect();
         (visible, self.input.visual_cursor().saturating_sub(scroll))
     }
 
-    /// The lines typed so far.
+    /// The history of lines, the oldest first.
     pub fn history(&self) -> &[String] {
         &self.history
     }

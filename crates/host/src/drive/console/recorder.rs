@@ -39,15 +39,15 @@ pub enum Event {
         /// The robot's first line; `None` if it was not reset.
         banner: Option<String>,
     },
-    /// A line of the user.
+    /// A line that the user sent.
     Sent(String),
-    /// The robot's answer to it.
+    /// The robot's answer to a line of the user.
     Answer(String),
-    /// A line that begins with `#`.
+    /// A line of the robot that begins with `#`, other than a pose.
     Note(String),
     /// An answer to the program's own `status`.
     Status(String),
-    /// A report of `watch`.
+    /// A pose that the robot reports because of `watch`.
     Pose {
         /// Frames since power-on, 50 a second.
         frame: u64,
@@ -67,7 +67,7 @@ pub struct Recorder<W: Write> {
     begin: Instant,
 }
 
-/// A new file for a session.
+/// Creates a new file for a session.
 ///
 /// # Errors
 /// Fails if it already exists, or cannot be made.
@@ -83,7 +83,7 @@ pub fn create(path: &Path) -> Result<Recorder<BufWriter<File>>, Failure> {
 }
 
 impl<W: Write> Recorder<W> {
-    /// A new session in a file of this name.
+    /// A recorder of a session that begins at `start`; `name` is the file's name for messages.
     pub fn new(name: String, out: W, start: Instant) -> Self {
         Self {
             name,
@@ -92,7 +92,7 @@ impl<W: Write> Recorder<W> {
         }
     }
 
-    /// Writes an event. All but poses are in the file at once.
+    /// Writes an event, and flushes it into the file at once unless it is a pose.
     ///
     /// # Errors
     /// Fails if writing fails; the message names the file.
@@ -149,7 +149,7 @@ impl Event {
     }
 }
 
-/// `# t=<frame> pose=<angles>`.
+/// Parses a line `# t=<frame> pose=<angles>`; `None` for any other line.
 fn pose(line: &str) -> Option<(u64, [f64; 4])> {
     let (frame, pose) = line.strip_prefix("# t=")?.split_once(" pose=")?;
     Some((frame.parse().ok()?, angles(pose)?))

@@ -1,5 +1,5 @@
-//! The terminal: lines above, which scroll away as usual, and at the bottom the
-//! status and the line being typed.
+//! The terminal: output lines scroll as usual; the status and the line being
+//! typed stay below them.
 
 use std::io::{self, Stdout, Write};
 
@@ -14,10 +14,10 @@ const SIGN: &str = "> ";
 /// A terminal that reports single keys. Dropping it restores the terminal.
 pub struct Screen {
     out: Stdout,
-    /// The columns of the two lines at the bottom, the second as far as the cursor, if
-    /// they are drawn.
+    /// Columns of the two lines at the bottom, the second up to the cursor; `None` if they
+    /// are not drawn.
     drawn: Option<[usize; 2]>,
-    /// The status line, the prompt, the cursor and the width that were drawn last.
+    /// The latest drawing: status line, prompt, cursor's column in it, terminal width.
     last: Option<(String, String, usize, u16)>,
 }
 
@@ -56,7 +56,7 @@ impl Screen {
         terminal::disable_raw_mode()
     }
 
-    /// Prints a line above the two at the bottom.
+    /// Prints a line above the two lines at the bottom.
     ///
     /// # Errors
     /// Fails if writing fails.
@@ -113,8 +113,8 @@ impl Screen {
     }
 }
 
-/// The number of rows between the first of the two lines and the cursor. A terminal that became
-/// narrower has folded them.
+/// The number of rows from the first of the two lines down to the cursor. A terminal that was
+/// made narrower has wrapped them into more rows.
 fn rows_above([status, cursor]: [usize; 2], width: usize) -> usize {
     let width = width.max(1);
     status.div_ceil(width).max(1) + cursor / width
@@ -122,7 +122,7 @@ fn rows_above([status, cursor]: [usize; 2], width: usize) -> usize {
 
 impl Drop for Screen {
     fn drop(&mut self) {
-        // The terminal may be gone; then nothing is left to be done.
+        // Errors are ignored, since the terminal may be gone.
         let _ = self.leave();
         let _ = terminal::disable_raw_mode();
     }

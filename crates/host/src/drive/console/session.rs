@@ -1,12 +1,12 @@
 //! The dialogue with the robot: the next line to send, the lines to show, and the events to
 //! record.
 //!
-//! The robot answers each line once and in order, and prints other lines in between. The
-//! line at the bottom of the console asks for `status` twice a second; these answers are
-//! not shown, and a user's line never waits for more than one of them. `stop` waits for none: it
-//! is sent at once, and again until the robot answers it, since a link may lose a line or its
-//! answer. A program that sends a script has to learn that a line was refused, so failed lines
-//! are counted.
+//! The robot answers each line once and in order, and prints other lines in between. For its
+//! status line the console sends `status` twice a second, and more often while a person drives;
+//! these answers are not shown, and a user's line waits for one of them at most. `stop` waits for
+//! none: it is sent at once, and repeated until the robot answers it, since a link may lose a line
+//! or its answer. A program that sends a script has to know if a line was refused, so failed
+//! lines are counted.
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
@@ -19,15 +19,15 @@ use super::recorder::Event;
 use super::status::Status;
 use crate::Failure;
 
-/// Interval between two questions for the robot's status.
+/// Interval between two `status` lines while no person drives the robot.
 const POLL: Duration = Duration::from_millis(500);
-/// Time that an answer may take.
+/// The longest wait for an answer to a line.
 const TIMEOUT: Duration = Duration::from_millis(2000);
-/// Time that an answer to the program's own `status` may take.
+/// The longest wait for an answer to the program's own `status`.
 const STATUS_TIMEOUT: Duration = Duration::from_millis(600);
 /// Time from one `stop` to the next while none is answered.
 const STOP_INTERVAL: Duration = Duration::from_millis(250);
-/// Time within which the answers to earlier `stop` lines have come.
+/// Time after a `stop` within which answers to earlier ones arrive.
 const LATE_ANSWERS: Duration = Duration::from_millis(500);
 /// Time without an answer to `stop` after which the user is told.
 const SILENCE: Duration = Duration::from_millis(800);
@@ -37,9 +37,9 @@ const SILENCE: Duration = Duration::from_millis(800);
 enum Question {
     /// A line of the user.
     Line(String),
-    /// `status`, by this program.
+    /// A `status` that this program sends by itself.
     Status,
-    /// `watch`, by this program.
+    /// A `watch` that this program sends by itself.
     Watch,
     /// A line about `deadman`, by this program.
     Deadman(String),
@@ -62,7 +62,7 @@ impl Question {
         }
     }
 
-    /// True if this answer can belong to the question; one that came too late does not.
+    /// True if an answer can belong to the question: an `ok` has to begin with its word.
     fn is_answered_by(&self, answer: &str) -> bool {
         let line = match self {
             Self::Line(line) | Self::Deadman(line) => line.to_ascii_lowercase(),
@@ -79,7 +79,7 @@ impl Question {
     }
 }
 
-/// A `stop` without an answer.
+/// A `stop` that the robot has not answered yet.
 #[derive(Debug)]
 struct UnansweredStop {
     since: Instant,
@@ -93,9 +93,9 @@ struct UnansweredStop {
 pub struct Session {
     waiting: Option<(Question, Instant)>,
     halt: Option<UnansweredStop>,
-    /// True from an answer that was missing until the next one, so that it is said once.
+    /// True from a missing answer until the next one, so that the user is told once.
     is_silent: bool,
-    /// Until then, answers to repeated `stop` lines may come.
+    /// The time until which answers to repeated `stop` lines may arrive.
     echoes_until: Instant,
     queue: VecDeque<Queued>,
     /// The handling of `deadman`, if a person drives.
@@ -114,8 +114,8 @@ pub struct Session {
 }
 
 impl Session {
-    /// A new dialogue. `polls_status`: ask for the status; `watches_poses`: ask
-    /// for every pose.
+    /// Starts a dialogue. `polls_status`: ask for the status repeatedly;
+    /// `watches_poses`: ask for every pose.
     pub fn new(now: Instant, polls_status: bool, watches_poses: bool) -> Self {
         Self {
             waiting: None,
@@ -136,8 +136,8 @@ impl Session {
         }
     }
 
-    /// The same dialogue with a person, who may leave a robot that walks out of reach: so
-    /// `deadman` is set while it walks.
+    /// Marks the dialogue as one with a person. The robot could walk out of reach, so `deadman`
+    /// is set while it walks.
     #[must_use]
     pub fn with_person(mut self) -> Self {
         self.deadman = Some(Deadman::default());
@@ -161,13 +161,13 @@ impl Session {
     }
 
     /// The line that restores the robot's own `deadman` before the program ends, so that the
-    /// robot goes on with its gait.
+    /// robot continues its gait; `None` if `deadman` is not set.
     pub fn last_line(&mut self) -> Option<String> {
         let deadman = self.deadman.as_mut().filter(|deadman| deadman.is_set)?;
         deadman.line(deadman::Step::Restore)
     }
 
-    /// Asks for the status as soon as no other line waits.
+    /// Makes the next `status` due at once; queued lines still go first.
     pub fn poll(&mut self, now: Instant) {
         self.next_poll = now;
     }
@@ -177,7 +177,7 @@ impl Session {
         self.deadman.as_ref().is_some_and(|deadman| deadman.is_set)
     }
 
-    /// Stops the robot. A line that waits would have it walk on, so it is dropped.
+    /// Stops the robot. Queued lines are dropped, since they could start it again.
     pub fn stop(&mut self, now: Instant) {
         self.queue.clear();
         self.sent += 1;
@@ -243,8 +243,8 @@ impl Session {
         None
     }
 
-    /// Drops the waiting lines, since the robot has not confirmed its `deadman`: a gait would go on
-    /// out of reach.
+    /// Drops the queued lines, since the robot has not confirmed its `deadman`: a gait would go
+    /// on out of reach. Returns the message to the user.
     fn drop_unconfirmed(&mut self) -> Option<String> {
         for queued in std::mem::take(&mut self.queue) {
             if let Queued::Line(line) = queued {
@@ -272,7 +272,7 @@ impl Session {
         }
     }
 
-    /// Handles a line of the robot; returns it if the user should see it.
+    /// Handles a line from the robot; returns the text to show to the user, if any.
     pub fn receive(&mut self, line: &str) -> Option<String> {
         let visible = Some(line.to_owned());
         let stands = self.halt.is_some() && cannot_move(line);
@@ -325,12 +325,12 @@ impl Session {
         visible
     }
 
-    /// True if a script waits for the answer to its own `stop`.
+    /// True if a `stop` sent as a normal line, such as a script's, waits for its answer.
     fn asks_to_stop(&self) -> bool {
         matches!(&self.waiting, Some((Question::Line(line), _)) if line == "stop")
     }
 
-    /// Takes an answer to `stop`; false if one came before, so that it belongs to no line.
+    /// Takes an answer to `stop`; returns false if `stop` has been answered already.
     fn take_stop_answer(&mut self, line: &str) -> bool {
         let Some(halt) = self.halt.take() else {
             return false;
@@ -338,7 +338,7 @@ impl Session {
         if halt.times == 1 {
             self.echoes_until = halt.since;
         }
-        // Answers come in order: that of the line before has been lost.
+        // Answers come in order, so the answer to the line before `stop` has been lost.
         if let Some((Question::Line(sent), _)) = self.waiting.take() {
             self.fail(sent, "no answer");
         }
@@ -346,7 +346,7 @@ impl Session {
         true
     }
 
-    /// The message about a question that was not answered in time.
+    /// Ends an overdue question; returns the message to the user, if any.
     pub fn overdue(&mut self, now: Instant) -> Option<String> {
         let since = |start: Instant| now.saturating_duration_since(start);
         if let Some(halt) = &mut self.halt
@@ -382,7 +382,7 @@ impl Session {
     /// Succeeds if the robot accepted all lines.
     ///
     /// # Errors
-    /// Fails if the robot refused a line; the message names the first one.
+    /// Fails if a line was refused, not answered or not sent; the message names the first one.
     pub fn verdict(&self) -> Result<(), Failure> {
         let Some((line, reason)) = &self.first_failed else {
             return Ok(());
@@ -409,8 +409,8 @@ impl Session {
     }
 }
 
-/// True if a line refuses `stop` to a robot that has no pulses: it rests, or its flash has no robot.
-/// All of it counts: what a radio has cut off may be the beginning of an older answer.
+/// True if a line refuses `stop` for lack of pulses: the robot rests, or its flash holds no robot.
+/// The whole line must match: a line cut off by a radio may be the beginning of an older answer.
 fn cannot_move(line: &str) -> bool {
     let is_refusal = |code: u8, reason: Text| {
         let mut refusal = format!("err {code} ");

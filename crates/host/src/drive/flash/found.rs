@@ -1,7 +1,7 @@
 //! The contents of a board's flash before it is written.
 //!
-//! Writing destroys them, and the user may have chosen the wrong board, so they are reported
-//! first. The firmware does not run meanwhile, so they are read from flash.
+//! Writing destroys the old contents, and the user may have chosen the wrong board, so they are
+//! reported first. The firmware does not run meanwhile, so they are read from flash.
 
 use std::fmt;
 
@@ -11,7 +11,7 @@ use lizard_core::numbers::section::START;
 use super::image::{BLANK, Image, PAGE};
 use crate::shared::firmware::{label, robot_in};
 
-/// The first page of a board whose upload was not finished: `rjmp .-2`, a jump to itself.
+/// The code at address 0 during an upload, alone in its page: `rjmp .-2`, a jump to itself.
 pub(super) const IDLE: [u8; 2] = [0xff, 0xcf];
 
 /// The address of a robot's section.
@@ -22,41 +22,41 @@ const ROBOT: usize = START as usize;
 pub struct FlashContents {
     /// The program in flash.
     pub program: Program,
-    /// The robot after the code, if that is a lizard's.
+    /// The robot's section after the code; it means something only to lizard firmware.
     pub robot: RobotInFlash,
     /// True if flash holds the image already.
     pub has_image: bool,
 }
 
-/// The code in a flash.
+/// The program in a board's flash.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Program {
-    /// Nothing, as on a new chip.
+    /// No program, as on a new chip.
     Blank,
-    /// Half a program: an upload was not finished, and the chip does nothing.
+    /// An incomplete program: an upload was not finished, and the chip does nothing.
     Half,
     /// The firmware of a lizard.
     Lizard {
         /// The version mark in the code.
         mark: Mark,
-        /// True if it differs from the code to be written, even if the version is the same.
+        /// True if the code differs from the code to be written, even with the same version.
         is_different: bool,
     },
     /// A program that is not lizard firmware.
     Other {
-        /// The size up to the last byte; `None` if only the first page was read.
+        /// The size up to the last byte that is not blank; `None` if only the first page was read.
         bytes: Option<usize>,
     },
 }
 
-/// The robot after a lizard's code.
+/// The robot's section in a board's flash.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum RobotInFlash {
-    /// Nothing was ever written there.
+    /// The section is blank.
     None,
     /// A valid robot, by its name and hash.
     Named(String),
-    /// One that was not written to its end, was damaged, or is of another format.
+    /// A section that was not completely written, is damaged, or has another format.
     Damaged,
 }
 
@@ -82,7 +82,7 @@ impl FlashContents {
                 },
             },
         };
-        // Nothing reads a robot after another program.
+        // Other programs do not use the robot's section, so it counts only with lizard firmware.
         let has_code = matches!(program, Program::Lizard { .. }) || !image.is_robot_alone();
         let has_image = has_code && pages.iter().all(|page| is_there(&page));
         let robot = match robot_in(flash) {
@@ -183,7 +183,7 @@ mod tests {
         );
         let other = file::image(&large).expect("it fits");
         assert_eq!(text(&flash, &other), describe(&paper));
-        // A sketch, shorter than the firmware, whose robot is still there.
+        // A sketch that is shorter than the firmware: the robot's section is still there.
         let mut sketch = flash.clone();
         sketch[..1000].fill(0x95);
         assert_eq!(text(&sketch, &alone), "the board has another program");

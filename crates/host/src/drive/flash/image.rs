@@ -1,24 +1,24 @@
-//! An image for the flash of a UNO: code and robot, or a robot alone.
+//! An image for the flash of a UNO: code and robot section, or a robot section alone.
 //!
 //! Flash is written in pages. Its last 512 bytes hold the boot loader, which writes all other
-//! pages and cannot write itself. So an image ends before it.
+//! pages and cannot write itself. So an image ends before the boot loader.
 
 use std::ops::Range;
 
 use ihex::Record;
 use lizard_core::numbers::section::START;
 
-/// Bytes that the chip writes at once (ATmega328P data sheet, table 27-7: 64 words).
+/// Bytes of a page, which the chip writes at once (ATmega328P data sheet, table 27-7: 64 words).
 pub const PAGE: usize = 128;
 /// The address of a UNO's boot loader.
 pub const BOOT: usize = 0x7e00;
 /// The address of a Nano's boot section (the fuses of Arduino's boards.txt: 2 KB). The chip
 /// starts there, even if the boot loader is shorter.
 pub const NANO_BOOT: usize = 0x7800;
-/// A byte of flash that was never written.
+/// The value of an erased byte of flash.
 pub const BLANK: u8 = 0xff;
 
-/// Bytes of a line of Intel HEX, as avr-objcopy has them.
+/// Data bytes in a line of Intel HEX, as avr-objcopy writes them.
 const LINE_BYTES: usize = 16;
 
 /// The firmware with its robot, or a robot alone.
@@ -52,7 +52,7 @@ pub enum ImageError {
     /// The robot's section is empty.
     #[error("there is no robot")]
     NoRobot,
-    /// The code reaches into the boot loader.
+    /// The image reaches into the boot loader.
     #[error("the firmware has {0} bytes; {BOOT} fit before the boot loader")]
     Long(usize),
     /// A line is not Intel HEX.
@@ -63,10 +63,10 @@ pub enum ImageError {
         /// The error of the Intel HEX reader.
         reason: ihex::ReaderError,
     },
-    /// The last line is missing, and so perhaps others before it.
+    /// The end record is missing, so other lines may be missing, too.
     #[error("the HEX file has no end: only a part of it is there")]
     NoEnd,
-    /// An address is given two values.
+    /// Two lines give different values to the same address.
     #[error("line {line} gives another value to address {address:#06x}")]
     Twice {
         /// The line's number, counted from 1.
@@ -74,7 +74,7 @@ pub enum ImageError {
         /// The address in flash.
         address: usize,
     },
-    /// A line reaches into the boot loader, which cannot write itself.
+    /// A line has data at or beyond the boot loader, which cannot write itself.
     #[error(
         "line {line} is for address {address:#06x}; the boot loader, which is never written, \
          begins at {BOOT:#06x}"
@@ -82,7 +82,7 @@ pub enum ImageError {
     BootLoader {
         /// The line's number, counted from 1.
         line: usize,
-        /// The address of its last byte.
+        /// The address of the line's last byte.
         address: usize,
     },
 }
@@ -129,7 +129,8 @@ impl Image {
     /// Reads Intel HEX.
     ///
     /// # Errors
-    /// Fails if the text is not Intel HEX, is cut off, contradicts itself, or is not for this chip.
+    /// Fails if the text is not complete Intel HEX, contradicts itself, has no code at address 0,
+    /// or reaches into the boot loader.
     pub fn from_hex(text: &str) -> Result<Self, ImageError> {
         let mut flash = vec![None; BOOT];
         let mut base = 0;
@@ -149,7 +150,7 @@ impl Image {
                 Record::EndOfFile => ended = true,
                 Record::ExtendedLinearAddress(upper) => base = usize::from(upper) << 16,
                 Record::ExtendedSegmentAddress(segment) => base = usize::from(segment) << 4,
-                // The chip starts at 0, whatever they say.
+                // Ignored: the chip always starts at address 0.
                 Record::StartLinearAddress(_) | Record::StartSegmentAddress { .. } => {}
             }
         }
@@ -204,7 +205,7 @@ impl Image {
 }
 
 impl Page {
-    /// The addresses in flash that the image occupies.
+    /// The addresses of the page in flash.
     pub fn range(&self) -> Range<usize> {
         self.address..self.address + PAGE
     }
@@ -235,7 +236,7 @@ fn put(
 mod tests {
     use super::*;
 
-    /// Two lines of a file of avr-objcopy.
+    /// Two data lines and the end record, as avr-objcopy writes them.
     const HEX: &str = "\
 :100000000C9434000C943E000C943E000C943E0082\n\
 :0400100001020304E2\n\

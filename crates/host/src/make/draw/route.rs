@@ -1,8 +1,8 @@
-//! Wires from a row of servos to a row of pins that do not cross each other.
+//! Paths of wires from a row of servos to a row of pins, without crossings.
 //!
 //! A wire goes down, sideways at its own height, and down again. The servos have the
 //! order of their pins, so only the heights have to be chosen: of the wires that go to
-//! the same side, the foremost turns first.
+//! the same side, the one farthest to that side turns first.
 
 /// A path on the page, with only horizontal and vertical parts.
 pub type Path = Vec<(f64, f64)>;
@@ -41,7 +41,7 @@ pub fn below(corner: (f64, f64), index: usize, pin: (f64, f64)) -> Path {
     vec![(x, y), (pin.0, y), pin]
 }
 
-/// The corner of such a wire: `corner` is the board's, at its lower right.
+/// The point where that wire turns; `corner` is the board's lower right corner.
 pub fn beside(corner: (f64, f64), index: usize) -> (f64, f64) {
     let offset = GAP * (index as f64 + 1.0);
     (corner.0 + offset, corner.1 + offset)

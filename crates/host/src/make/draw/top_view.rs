@@ -8,15 +8,15 @@ use super::body::Sheet;
 use crate::shared::ink::{DARK, SERVO, circle, edged, page};
 
 pub(super) const SIZE: (f64, f64) = (1000.0, 1110.0);
-/// Pixels of a mm, unless the robot is too large for the page.
+/// Pixels per mm; fewer if the robot is too large for the page.
 const PIXELS_PER_MM: f64 = 3.1;
-/// Pixels that are left at the page's edge for names and measures.
+/// Margins of the page in x and y for names and measures, pixels.
 const MARGIN: (f64, f64) = (80.0, 28.0);
-/// A head's skin reaches so far beyond its point, mm; a tail's less.
+/// Reach of the skin beyond the head point, mm; beyond the tail point it is less.
 pub(super) const SKIN_BEYOND: f64 = 30.0;
 /// Distance from the skin to its label, mm.
 pub(super) const NAME_BEYOND: f64 = 6.0;
-/// Half the length of the plate for which the skin is drawn, mm.
+/// Half the length of the plate that the skin's coordinates fit, mm.
 const SKIN_LENGTH: f64 = 80.4;
 
 const SKIN: &str = "#e3ecdc";
@@ -50,7 +50,7 @@ pub fn top_view(robot: &Robot, solution: &Solution, has_labels: bool) -> String 
 pub(super) struct View<'a> {
     pub(super) robot: &'a Robot,
     pub(super) solution: &'a Solution,
-    /// Pixels of a mm.
+    /// Pixels per mm.
     pub(super) scale: f64,
 }
 
@@ -117,7 +117,7 @@ impl<'a> View<'a> {
         self.solution.crank_tips()[servo]
     }
 
-    /// A lizard's outline, pale, so that a mechanism looks like an animal.
+    /// Draws a lizard's pale outline, so that the mechanism looks like an animal.
     fn draw_skin(&self, group: Group) -> Group {
         let grown = self.grown();
         let around = |point: Joint, x: f64, y: f64| {
@@ -172,7 +172,7 @@ impl<'a> View<'a> {
         group.add(outline).add(eye(-9.0)).add(eye(9.0))
     }
 
-    /// The prismatic joint between the arms of a front and a rear servo.
+    /// Draws the prismatic joint between the arms of a front and a rear servo.
     fn draw_slider(&self, mut group: Group, side: Side) -> Group {
         let ([front, rear], slider) = (side.servos(), self.solution.side(side));
         let rear_shaft = self.shafts()[rear];
@@ -200,7 +200,7 @@ impl<'a> View<'a> {
         group
     }
 
-    /// Two cranks, two couplers and the point that they carry.
+    /// Draws two cranks, two couplers and the end point that they carry.
     fn draw_five_bar(&self, mut group: Group, end: End) -> Group {
         let (servos, point) = (end.servos(), self.solution.point(end));
         for servo in servos {
@@ -225,7 +225,7 @@ impl<'a> View<'a> {
         self.legs()[servo].foot
     }
 
-    /// The legs, none of which lags.
+    /// The legs' places at this pose, without lag.
     pub(super) fn legs(&self) -> [LegPlace; 4] {
         let angles = self.angles();
         std::array::from_fn(|i| self.robot.legs()[i].at(angles[i], angles[i]))

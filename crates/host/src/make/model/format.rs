@@ -1,13 +1,13 @@
-//! The format of a model, by the ending of its file.
+//! The format of a model's file, chosen by its ending.
 
 use std::path::Path;
 
 use crate::Failure;
 
-/// A format.
+/// The format of a model's file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Format {
-    /// MuJoCo's.
+    /// The format of MuJoCo.
     Mjcf,
     /// The format of ROS.
     Urdf,
@@ -16,11 +16,11 @@ pub(super) enum Format {
 }
 
 impl Format {
-    /// The format of a file. One without an ending, such as /dev/stdout, is for MuJoCo, whose file
-    /// alone holds everything.
+    /// The format of a file, by its ending. Without one, as in /dev/stdout, it is MuJoCo's, the
+    /// only one that holds everything in one file.
     ///
     /// # Errors
-    /// Fails for another ending.
+    /// Fails for any other ending.
     pub fn of(path: &Path) -> Result<Self, Failure> {
         let ending = path
             .extension()

@@ -46,13 +46,13 @@ impl Spreads for Args {
 struct Pair<'a> {
     first: &'a str,
     second: &'a str,
-    /// The proved least distance, mm.
+    /// Proved lower bound of the distance, mm; below 0 the parts may overlap.
     proved: f64,
     /// The least distance found at a pose that the guard accepts, mm; null if none is found.
     seen: Option<f64>,
     /// The pose with that distance: A1 to A4, deg.
     pose: Option<[f64; 4]>,
-    /// A1 to A4, deg, near which no larger distance could be proved; null without a doubt.
+    /// A1 to A4, deg, near which `proved` could not be raised; null if it is near `seen`.
     doubt: Option<[f64; 4]>,
 }
 
@@ -88,12 +88,12 @@ impl<'a> From<&'a NearestPair> for Pair<'a> {
 /// Template of the progress bar, which counts pairs of mounts.
 const PAIRS: &str = "{wide_bar} {pos}/{len} looking for parts that meet";
 
-/// Proves that the parts fit, with a progress bar.
+/// Proves how close the parts come to each other, with a progress bar.
 pub(super) fn proof(assembly: &Assembly) -> Proof {
     complete_proof(&Questions::new(assembly, |_, _| true), None)
 }
 
-/// Makes the proof from the answers that are known, and finds the others.
+/// Makes the proof from the known answers, and computes the missing ones.
 fn complete_proof(questions: &Questions, answers: Option<Vec<Answer>>) -> Proof {
     let bar = bar(questions.count(), PAIRS);
     let answers = |index: usize| answers.as_ref()?.get(index).cloned();
@@ -105,7 +105,7 @@ fn complete_proof(questions: &Questions, answers: Option<Vec<Answer>>) -> Proof 
 /// Proves that the parts fit and prints the clearances.
 ///
 /// # Errors
-/// Fails for a wrong robot.toml, measures that contradict each other, or parts that come too close.
+/// Fails for an invalid robot.toml, contradictory measures, or parts that come too close.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.spread.robot.load()?;
     let assembly = Assembly::new(&robot);

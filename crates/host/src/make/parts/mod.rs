@@ -52,9 +52,9 @@ pub struct Args {
 struct PartEntry {
     part: String,
     count: usize,
-    /// The part that it may be put in instead of, if the robot has it not.
+    /// The part that this one may replace; null for a part that the robot has.
     instead_of: Option<String>,
-    /// The bodies that are made so, by their names in the assembly.
+    /// The bodies that this part is made for, by their names in the assembly.
     bodies: Vec<String>,
     /// The volume of one piece, mm^3.
     volume: f64,
@@ -70,8 +70,8 @@ impl From<Unfit> for Failure {
 /// Makes all files and writes them.
 ///
 /// # Errors
-/// Fails for a wrong robot.toml, parts that do not fit, a folder or a file that cannot be written.
-/// Nothing is written unless all of it could be made.
+/// Fails for an invalid robot.toml, parts that do not fit, or a file that cannot be written.
+/// Writes nothing before all files are made.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let kerf = robot.parts().kerf;
@@ -138,7 +138,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     Ok(out.flush()?)
 }
 
-/// The lines for a robot.toml whose weight is not that of the parts.
+/// The message for a robot.toml whose mass or mass centre is not that of the parts.
 fn weight_note(bill: &Bill, robot: &Robot) -> String {
     let Body { mass, centre } = robot.ground().body;
     format!(
@@ -150,7 +150,7 @@ fn weight_note(bill: &Bill, robot: &Robot) -> String {
     )
 }
 
-/// Writes all files.
+/// Writes all files below `folder`.
 fn write(folder: &Path, files: &[File]) -> Result<(), Failure> {
     for file in files {
         let path = folder.join(&file.path);

@@ -1,5 +1,5 @@
-//! The plane of the two head servos: margins, singular curves, and the paths
-//! that the gaits take through it.
+//! A chart of the angles of the two head servos: margins, singular curves, and the
+//! paths that the gaits take.
 
 use lizard_kinematics::{Check, End, FiveBar, Pose, SingularPose, Singularity, wrap};
 use lizard_robot::{CheckedGait, Robot};
@@ -10,8 +10,8 @@ use crate::shared::plot::{Axis, BLUES, IMPOSSIBLE, Plot, Scale, draw_entry};
 
 const SIZE: (f64, f64) = (1500.0, 860.0);
 const WHOLE: (f64, f64) = (0.0, 180.0);
-/// Okabe and Ito's colours and more dark ones; dashes tell apart what colour may
-/// not.
+/// Colours and dashes of the paths: Okabe and Ito's colours and more dark ones.
+/// Dashes distinguish paths whose colours look alike.
 const STYLES: [(&str, &str); 10] = [
     ("#000000", ""),
     ("#d55e00", ""),
@@ -27,7 +27,7 @@ const STYLES: [(&str, &str); 10] = [
 const A1: &str = "#882255";
 const A2: &str = "#b58900";
 
-/// Least margin of the head over theta1 and theta4, with the gaits.
+/// Draws the head's least margin over theta1 and theta4, with the paths of the gaits.
 pub fn singularity(robot: &Robot) -> String {
     let scale = Scale {
         least: 0.3,
@@ -60,7 +60,7 @@ pub fn singularity(robot: &Robot) -> String {
         });
     }
     group = draw_curves(group, &left, robot);
-    // Where the right panel lies in the left one.
+    // The outline of the right panel in the left one.
     let corner = left.at(near.x.0, near.y.1);
     let end = left.at(near.x.1, near.y.0);
     group = group.add(edged(
@@ -141,8 +141,8 @@ pub fn singularity(robot: &Robot) -> String {
     page(SIZE, group)
 }
 
-/// The least of the head's margins where the head is safe; the tail at neutral
-/// and the sliders leave it out.
+/// The least of the head's margins, with the tail at neutral; `None` if the pose is
+/// impossible or breaks a limit other than those of the sliders.
 fn least(robot: &Robot, theta1: f64, theta4: f64) -> Option<f64> {
     let pose = Pose {
         theta1,
@@ -159,8 +159,8 @@ fn least(robot: &Robot, theta1: f64, theta4: f64) -> Option<f64> {
     (!broken).then(|| margins.into_iter().fold(1.0, f64::min))
 }
 
-/// Each path in the plane with the names of the gaits that take it. A gait read
-/// backwards takes the same path.
+/// Each path in the plane with the names of the gaits that take it. A reversed gait
+/// takes the same path.
 fn paths(robot: &Robot) -> Vec<(String, Vec<(f64, f64)>)> {
     let mut paths: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
     for gait in robot.gaits() {
@@ -200,7 +200,7 @@ fn are_close(first: &[(f64, f64)], second: &[(f64, f64)]) -> bool {
     first.iter().all(|point| near(point, second)) && second.iter().all(|point| near(point, first))
 }
 
-/// A square around all paths.
+/// A square plot that contains all paths.
 fn surroundings(paths: &[(String, Vec<(f64, f64)>)]) -> Plot {
     let all = || paths.iter().flat_map(|(_, path)| path);
     let range_of = |pick: fn(&(f64, f64)) -> f64| {
@@ -218,12 +218,12 @@ fn surroundings(paths: &[(String, Vec<(f64, f64)>)]) -> Plot {
     }
 }
 
-/// The singular curves within the plot, as short pieces.
+/// Draws the singular curves within the plot, as short segments.
 fn draw_curves(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
     let bars = robot.lizard().end(End::Head);
     group = draw_sweep(group, plot, |theta1| bars.singular_with(theta1).collect());
-    // Once more with the other crank leading, where the first runs steeply: the
-    // five-bar seen in a mirror, in which left and right change places.
+    // A sweep over theta4, too, for curves that are steep over theta1. For it the
+    // five-bar is mirrored: left and right change places.
     let mirrored = FiveBar {
         base: bars.base,
         crank_left: bars.crank_right,
@@ -255,7 +255,7 @@ fn draw_curves(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
     group
 }
 
-/// Joins the singular poses of one angle to those of the next.
+/// Draws segments from the singular poses at each angle to those at the next.
 fn draw_sweep(mut group: Group, plot: &Plot, poses_at: impl Fn(f64) -> Vec<SingularPose>) -> Group {
     const STEP: f64 = 0.5;
     let inside = |pose: &&SingularPose| {

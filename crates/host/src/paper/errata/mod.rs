@@ -1,4 +1,4 @@
-//! `lizard errata`: every printed equation, measured against the geometric solution.
+//! `lizard errata`: compares every equation of the paper with the geometric solution.
 //! Only the equations are typed in; everything else in the table is computed.
 
 mod equation;
@@ -43,7 +43,7 @@ pub struct Args {
     json: bool,
 }
 
-/// Samples of docs/errata.md.
+/// Number of random poses behind docs/errata.md.
 pub const SAMPLES: u32 = 20_000;
 
 /// An equation with its measured errors.
@@ -57,10 +57,10 @@ pub struct Entry {
     /// Share of the samples at which the printed form has no real value.
     unreal: f64,
     unit: &'static str,
-    /// The largest error at a place that deserves a closer look, and that place.
+    /// The largest error at a place that needs a closer look, in `unit`, and that place.
     aside: Option<(f64, &'static str)>,
-    /// True if it holds with right-hand angles clockwise from -x; null if that reading does not
-    /// arise.
+    /// True if it holds with right-hand angles measured clockwise from -x; null if the drawings
+    /// do not suggest that reading.
     holds_clockwise: Option<bool>,
     corrected: Option<&'static str>,
     corrected_worst: Option<f64>,
@@ -70,7 +70,7 @@ pub struct Entry {
 /// Measures every equation and prints the table.
 ///
 /// # Errors
-/// Fails for an output that cannot be written.
+/// Fails if the output cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let entries = measure(args.samples);
     let mut out = io::stdout().lock();
@@ -84,7 +84,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Every equation in the paper's order, measured over some poses.
+/// Measures every equation, in the paper's order, at `samples` random poses.
 pub fn measure(samples: u32) -> Vec<Entry> {
     let samples: Vec<Sample> = Sample::many(samples as usize).collect();
     let all: Vec<&Equation> = [
@@ -140,7 +140,7 @@ impl Entry {
         }
     }
 
-    /// The largest error in words; all rounding errors count as equal.
+    /// The largest error in words, `rounding` if the equation holds; then that of `aside`.
     fn format_error(&self) -> String {
         let mut words = self.plain_miss();
         if let Some((worst, place)) = self.aside {
@@ -167,13 +167,13 @@ impl Entry {
         words
     }
 
-    /// True if a form that holds was found.
+    /// True if the printed or the corrected form holds.
     pub fn is_settled(&self) -> bool {
         self.holds || self.corrected_holds == Some(true)
     }
 }
 
-/// Three figures, without an exponent.
+/// Formats a value with three significant digits, without an exponent.
 fn figures(value: f64) -> String {
     let digits = (2 - value.abs().max(1e-9).log10().floor() as i32).clamp(0, 9);
     format!("{value:.0$}", digits as usize)

@@ -192,7 +192,7 @@ pub const EQUATIONS: &[Equation] = &[
         "lg12 lg13 sin(θ_lg12 - θ_lg13) = 0, so sin θ_lg1 = 0",
         |s| {
             let (leg, theta) = (&s.lizard.leg, s.angles().t[1]);
-            // Columns by θ_lg12 = 0 and θ_lg13 = θ_lg1.
+            // The columns for θ_lg12 = 0 and θ_lg13 = θ_lg1.
             let columns = [
                 0.0,
                 leg.follower * theta.sin(),
@@ -205,7 +205,7 @@ pub const EQUATIONS: &[Equation] = &[
     ),
 ];
 
-/// theta1 where every slider is at nominal: the neutral pose, degrees.
+/// theta1 in the neutral pose, where every slider has its nominal length, degrees.
 fn home_angle(s: &Sample) -> f64 {
     let l = &s.lizard.links;
     ((l.l12 + l.l13 - l.l10) / (l.l11 + l.l14))
@@ -226,13 +226,13 @@ fn neutral(s: &Sample) -> Option<(f64, f64)> {
     Some((pose.type2, sum.to_radians()))
 }
 
-/// A block of K or K* for two bars of an end.
+/// The 2x2 block of K or K* for the left and the right bar of an end.
 struct Block {
-    /// The true block, by rows.
+    /// Computes the true block, by rows.
     truth: fn(&Sample) -> [f64; 4],
-    /// The numbers of the left and the right bar's angles.
+    /// The indices of the left and the right bar's angles in the paper.
     angles: [usize; 2],
-    /// The numbers of the bars.
+    /// The indices of the bars' lengths, left and right.
     bars: [usize; 2],
 }
 
@@ -258,7 +258,7 @@ const PASSIVE_TAIL: Block = Block {
 };
 
 impl Block {
-    /// The error of the printed block.
+    /// The largest error of the printed block.
     fn printed(&self, s: &Sample) -> Option<f64> {
         let right = s.angles().t[self.angles[1]];
         Some(largest_difference(
@@ -267,8 +267,8 @@ impl Block {
         ))
     }
 
-    /// The error of the printed block with the right angle clockwise from -x. The derivative by
-    /// it changes sign with its sense.
+    /// The largest error of the printed block if the right bar's angle is measured clockwise from
+    /// -x. That reverses the sign of the derivative by this angle.
     fn clockwise(&self, s: &Sample) -> Option<f64> {
         let [a, b, c, d] = (self.truth)(s);
         let right = PI - s.angles().t[self.angles[1]];
@@ -278,7 +278,7 @@ impl Block {
         ))
     }
 
-    /// The error of the corrected block.
+    /// The largest error of the corrected block.
     fn corrected(&self, s: &Sample) -> Option<f64> {
         let right = s.angles().t[self.angles[1]];
         Some(largest_difference(
@@ -287,7 +287,7 @@ impl Block {
         ))
     }
 
-    /// The block with some angle of the right bar, and a sign of its sine.
+    /// The block in the paper's form, with the right bar's angle (rad) and the sign of its sine.
     fn block_with(&self, s: &Sample, right: f64, sign: f64) -> [f64; 4] {
         let l = s.lizard.links.to_array();
         let ([a, b], left) = (self.bars, s.angles().t[self.angles[0]]);
@@ -300,7 +300,7 @@ impl Block {
     }
 }
 
-/// The largest difference of two 2x2 blocks, given by rows.
+/// The largest difference between elements of two 2x2 blocks, given by rows.
 fn largest_difference(truth: &[f64; 4], block: &[f64; 4]) -> f64 {
     truth
         .iter()
@@ -308,7 +308,7 @@ fn largest_difference(truth: &[f64; 4], block: &[f64; 4]) -> f64 {
         .fold(0.0, |worst, (a, b)| worst.max((a - b).abs()))
 }
 
-/// A block of the true K: two rows, and the columns of two servos.
+/// A block of the true K: rows `row` and `row + 1`, and the columns of two servos.
 fn active_block(s: &Sample, row: usize, first: usize, second: usize) -> [f64; 4] {
     let k = s.s.active_matrix();
     [
@@ -319,7 +319,7 @@ fn active_block(s: &Sample, row: usize, first: usize, second: usize) -> [f64; 4]
     ]
 }
 
-/// A diagonal block of the true K*.
+/// The 2x2 block on the diagonal of the true K* that starts at `column`.
 fn passive_block(s: &Sample, column: usize) -> [f64; 4] {
     let k = s.s.passive_matrix();
     [
@@ -330,7 +330,7 @@ fn passive_block(s: &Sample, column: usize) -> [f64; 4] {
     ]
 }
 
-/// A printed side block: rear arm, then front arm with the sign of its sine.
+/// A side's block: the rear arm's column, then the front arm's with `sign` before its sine.
 fn side_block([rear, front]: [f64; 2], rear_angle: f64, front_angle: f64, sign: f64) -> [f64; 4] {
     [
         rear * rear_angle.sin(),
@@ -340,8 +340,8 @@ fn side_block([rear, front]: [f64; 2], rear_angle: f64, front_angle: f64, sign: 
     ]
 }
 
-/// The determinant of a coupler block over its lengths, turned so that it is
-/// the sine of right less left.
+/// The determinant of a coupler block, divided by the product `lengths` of its bars and with
+/// its sign changed: sin(right angle - left angle).
 fn determinant_sine([a, b, c, d]: &[f64; 4], lengths: f64) -> f64 {
     -(a * d - b * c) / lengths
 }

@@ -12,14 +12,14 @@ use super::frame_log::FrameLog;
 use super::spans::Span;
 use crate::shared::ink::pin_name;
 
-/// One frame as the servos understand it.
+/// The servo angles of one frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ServoFrame {
     /// Seconds since power-on.
     pub seconds: f64,
     /// Servo angles in degrees, chassis frame; `None` while the robot rests.
     pub angles: Option<[f64; 4]>,
-    /// The servos' sweeps from neutral in degrees, foot forward positive.
+    /// Servo sweeps from neutral in degrees, foot forward positive; `None` while the robot rests.
     #[serde(skip)]
     pub sweeps: Option<[f64; 4]>,
 }
@@ -27,19 +27,19 @@ pub struct ServoFrame {
 /// The pulses of one servo.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ServoReport {
-    /// A1 to A4.
+    /// Name of the servo, `A1` to `A4`.
     pub servo: &'static str,
-    /// The servo's leg: L or R, F or H for hind.
+    /// The servo's leg: L or R for the side, then F for front or H for hind.
     pub leg: &'static str,
-    /// The servo's pin, `D9` or `A0`.
+    /// The servo's pin, such as `D9` or `A0`.
     pub pin: String,
     /// Number of pulses.
     pub pulses: usize,
-    /// Shortest pulse, us.
+    /// Shortest pulse, us; 0 without pulses.
     pub min_us: f64,
-    /// Longest pulse, us.
+    /// Longest pulse, us; 0 without pulses.
     pub max_us: f64,
-    /// Worst deviation of a width from its command, cycles.
+    /// Worst deviation of a width from its command, cycles; `None` without known commands.
     pub width_error: Option<u64>,
     /// Worst deviation of a period from 20 ms, cycles.
     pub period_error: u64,
@@ -47,40 +47,40 @@ pub struct ServoReport {
     pub slew: f64,
 }
 
-/// The tightest moment of the run.
+/// The smallest margin of the run, and its time.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SmallestMargin {
     /// The name of the margin.
     pub margin: String,
     /// The value of the margin.
     pub value: f64,
-    /// When, in seconds since power-on.
+    /// Seconds from power-on to the frame with this margin.
     pub seconds: f64,
 }
 
 /// The smallest margins and the strokes over all poses of the run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Safety {
-    /// The smallest margin.
+    /// The smallest margin; `None` without a feasible pose.
     pub least: Option<SmallestMargin>,
-    /// Least and largest slider travel, mm.
+    /// Smallest and largest slider travel, mm.
     pub stroke: [f64; 2],
-    /// Frames that break a limit of robot.toml, with the first reason.
+    /// Number of frames whose pose is infeasible or breaks a limit of robot.toml.
     pub violations: usize,
-    /// The first violation in words.
+    /// The reason of the first such frame.
     pub first_violation: Option<String>,
 }
 
-/// The path under one command, by the contact model.
+/// The robot's path during one command, by the contact model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CommandPath {
     /// The command in effect.
     pub command: String,
-    /// The beginning, seconds since power-on.
+    /// Start of the command, seconds since power-on.
     pub from: f64,
-    /// The end, seconds since power-on.
+    /// End of the command, seconds since power-on.
     pub to: f64,
-    /// Distance forward from its own beginning, mm; `None` if it depends on a tie, two feet
+    /// Distance forward from the start of the path, mm; `None` if it depends on a tie, two feet
     /// against two.
     pub forward: Option<f64>,
     /// Distance to the left, mm; `None` if it depends on a tie.
@@ -114,17 +114,17 @@ pub fn instants(robot: &Robot, frames: &[Frame]) -> Vec<ServoFrame> {
         .collect()
 }
 
-/// A run's frames with the robot whose servos got them.
+/// A run's frames, and the robot whose servos received them.
 #[derive(Debug, Clone, Copy)]
 pub struct Run<'a> {
-    /// The robot that the frames are of.
+    /// The robot whose servos received the frames.
     pub robot: &'a Robot,
     /// The frames of the run.
     pub log: &'a FrameLog,
 }
 
 impl<'a> Run<'a> {
-    /// Frame by frame, those whose numbers are in `range`.
+    /// The servo angles of the frames whose numbers are in `range`, in order.
     pub fn within(
         self,
         range: std::ops::Range<usize>,
@@ -137,7 +137,7 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// Frame by frame.
+    /// The servo angles of all frames, in order.
     pub fn instants(self) -> impl Iterator<Item = ServoFrame> + Clone + 'a {
         self.within(0..self.log.widths.len())
     }
@@ -149,8 +149,8 @@ impl Serialize for Run<'_> {
     }
 }
 
-/// Each servo's row of the table. `commands` are the widths in cycles that the
-/// firmware's core asked for, frame by frame, 0 for none.
+/// Makes each servo's row of the table. `commands` are the widths in cycles that the
+/// firmware's core requested in each frame, 0 for no pulse.
 pub fn servos(run: Run<'_>, commands: Option<&[[u16; 4]]>) -> Vec<ServoReport> {
     let frames = &run.log.widths;
     let mut slew = [0.0f64; 4];
@@ -185,7 +185,7 @@ pub fn servos(run: Run<'_>, commands: Option<&[[u16; 4]]>) -> Vec<ServoReport> {
     (0..4).map(row).collect()
 }
 
-/// Solves every pose of the run.
+/// Solves every pose of the run, and collects margins, strokes and violations.
 pub fn safety(run: Run<'_>) -> Safety {
     let mut safety = Safety {
         least: None,
@@ -193,7 +193,7 @@ pub fn safety(run: Run<'_>) -> Safety {
         violations: 0,
         first_violation: None,
     };
-    // A robot that stands repeats its pose: solved once.
+    // A standing robot repeats its pose, which is solved only once.
     let mut latest: Option<([f64; 4], Option<String>)> = None;
     for instant in run.instants() {
         let Some(angles) = instant.angles else {
@@ -213,7 +213,7 @@ pub fn safety(run: Run<'_>) -> Safety {
 }
 
 impl Safety {
-    /// Takes a pose into account; returns why it breaks a limit.
+    /// Adds a pose; returns the reason if it is infeasible or breaks a limit.
     fn add(&mut self, robot: &Robot, angles: [f64; 4], seconds: f64) -> Option<String> {
         let solution = match robot.lizard().solve(&angles.into()) {
             Err(infeasible) => return Some(infeasible.to_string()),
@@ -235,9 +235,9 @@ impl Safety {
     }
 }
 
-/// The path under each command by the contact model, and the path of the complete run as the
-/// last one. Legs count as rigid, so that each pair of frames is computed once; `lizard twin`
-/// lets them lag. Feet are never lifted: see [`lizard_robot::Ground`].
+/// The path during each command by the contact model, and the path of the complete run as the
+/// last one. Legs count as rigid, so that equal pairs of frames are computed once; `lizard twin`
+/// lets legs lag. Feet are never lifted: see [`lizard_robot::Ground`].
 pub fn command_paths(run: Run<'_>, spans: &[Span]) -> Vec<CommandPath> {
     let mut steps = Steps {
         run,
@@ -270,8 +270,8 @@ pub fn command_paths(run: Run<'_>, spans: &[Span]) -> Vec<CommandPath> {
     paths
 }
 
-/// True for each part of a command's path (forward, left, turn) that is determined. A part of a
-/// gait's path may depend on a tie, and so may that of some of its cycles.
+/// True for each part of a command's path (forward, left, turn) that is determined. For a
+/// gait, a part is not determined if its prediction depends on a tie.
 fn decided_parts(robot: &Robot, command: &str) -> [bool; 3] {
     robot.gait_of_line(command).map_or([true; 3], |gait| {
         let prediction = robot.predict(gait);
@@ -293,28 +293,27 @@ impl CommandPath {
     }
 }
 
-/// The travel of a robot that stands.
+/// The travel of a standing robot.
 const NOWHERE: Travel = Travel {
     forward: 0.0,
     left: 0.0,
     turn: 0.0,
 };
 
-/// Widths of a frame and of the next.
+/// Widths of a frame and of the next, cycles.
 type Pair = [[u16; 4]; 2];
 
-/// The movement from one frame to the next. A gait repeats its frames, so each pair is computed
-/// once.
+/// Computes the movement from one frame to the next. A gait repeats its frames, so the results
+/// are kept.
 struct Steps<'a> {
     run: Run<'a>,
     known: HashMap<Pair, Travel>,
 }
 
 impl Steps<'_> {
-    /// The movement from frame number `n` to the next. A frame in which the robot rests moves
-    /// nothing.
+    /// The movement from frame number `n` to the next; none while the robot rests.
     fn from(&mut self, n: usize) -> Travel {
-        /// Pairs that are kept, some megabytes.
+        /// Largest number of pairs that are kept: a few megabytes.
         const KEPT: usize = 100_000;
         let frames = &self.run.log.widths;
         let Some(next) = frames.get(n + 1) else {
@@ -336,7 +335,7 @@ impl Steps<'_> {
     }
 }
 
-/// Two paths one after the other; the second is relative to the end of the first.
+/// Joins two paths; the second one is relative to the end of the first.
 fn followed_by(first: Travel, second: Travel) -> Travel {
     let (sin, cos) = first.turn.to_radians().sin_cos();
     Travel {

@@ -1,4 +1,4 @@
-//! Divides edges into frames: one pulse for each servo every 20 ms.
+//! Groups the edges of servo pulses into frames: one pulse for each servo every 20 ms.
 
 use lizard_robot::Robot;
 use simulated_uno::{CYCLES_PER_MS, Edge, Pin, pulses};
@@ -6,18 +6,18 @@ use simulated_uno::{CYCLES_PER_MS, Edge, Pin, pulses};
 /// Cycles of a frame, 20 ms.
 pub const FRAME: u64 = 20 * CYCLES_PER_MS;
 
-/// Cycles between two servos' pulses. A pulse that comes this much before its
-/// frame's start still belongs to it, halved.
+/// Cycles from one servo's pulse to the next one's. A pulse that comes up to half a slot
+/// before its frame's start still belongs to this frame.
 pub(super) const SLOT: u64 = FRAME / 5;
 
 /// The servo pulses of one frame, in servo order A1, A2, A3, A4.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Frame {
-    /// Cycle at which A1's pulse starts, or would start.
+    /// Cycle at which A1's pulse should start.
     pub start: u64,
-    /// Cycle at which each pulse starts; `None` without a pulse.
+    /// Cycle at which each servo's pulse starts; `None` without a pulse.
     pub starts: [Option<u64>; 4],
-    /// Width of each pulse in cycles of 62.5 ns.
+    /// Width of each servo's pulse in cycles of 62.5 ns; `None` without a pulse.
     pub widths: [Option<u64>; 4],
 }
 
@@ -54,13 +54,13 @@ pub fn first_cycle(start: u64) -> u64 {
     start.saturating_sub(SLOT / 2)
 }
 
-/// Start of the first frame that opens at cycle `now` or later, on the grid of
-/// frames that `anchor` is a start of.
+/// Start of the first frame that opens, half a slot before its start, at cycle `now` or
+/// later. Frames start at cycle `anchor` and every 20 ms after it.
 pub fn next_start(anchor: u64, now: u64) -> u64 {
     anchor + (now + SLOT / 2).saturating_sub(anchor).div_ceil(FRAME) * FRAME
 }
 
-/// Cycle of A1's latest rising edge.
+/// Cycle of the last rising edge of A1; `None` without one.
 pub fn latest_start(edges: &[Edge], pins: [Pin; 4]) -> Option<u64> {
     edges
         .iter()

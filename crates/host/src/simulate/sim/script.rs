@@ -11,7 +11,7 @@ pub struct Step {
     pub command: String,
 }
 
-/// Commands in order of time.
+/// A run of the robot: its commands, the changes of its contacts, and its end.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Script {
     /// The commands in order of time.
@@ -43,7 +43,7 @@ pub enum ScriptError {
     },
 }
 
-/// Time that the robot stands before the first command of the built-in scripts.
+/// Time for which the robot stands before the first command of the built-in scripts.
 const STAND_MS: u64 = 1000;
 /// Time for stop, status and rest at the end.
 const CLOSE_MS: u64 = 2000;
@@ -52,11 +52,11 @@ impl Script {
     /// The shortest of the built-in scripts, ms.
     pub const SHORTEST_MS: u64 = STAND_MS + CLOSE_MS + 1000;
 
-    /// Boot, gaits one after the other, stop, status, rest, within `ms`. The
-    /// last gait gets what is left of the time.
+    /// A script of `ms` milliseconds, at least [`Self::SHORTEST_MS`]: boot, the
+    /// gaits one after the other, stop, status, rest.
     pub fn of_gaits(gaits: &[&str], ms: u64) -> Self {
         let time = ms - STAND_MS - CLOSE_MS;
-        // Of two gaits the first gets the longer part.
+        // The last gait gets four parts of the time, each one before it five.
         let start = |n: usize| STAND_MS + time * 5 * n as u64 / (4 + 5 * (gaits.len() as u64 - 1));
         let command = |gait: &str| gait.replace('-', " ");
         let mut steps: Vec<Step> = gaits

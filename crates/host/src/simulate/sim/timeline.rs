@@ -1,4 +1,4 @@
-//! The picture of a run: servo angles over time, and which foot pushes or returns.
+//! The picture of a run: servo angles over time, and each foot's stance and swing.
 
 use lizard_robot::servo::NAMES;
 use svg::node::element::Group;
@@ -28,11 +28,11 @@ const HEIGHT: f64 = AXIS + 96.0;
 /// The title and description of the picture.
 #[derive(Debug, Clone, Copy)]
 pub struct Caption {
-    /// Above it, large.
+    /// Title above the picture, in large type.
     pub title: &'static str,
-    /// Below that, small.
+    /// Description below the title, in small type.
     pub note: &'static str,
-    /// Below the axis of time.
+    /// Label below the time axis.
     pub axis: &'static str,
 }
 
@@ -43,7 +43,7 @@ pub const SIMULATED: Caption = Caption {
     axis: "time since power-on (s)",
 };
 
-/// The picture as SVG text. `spans` are the commands that were in effect.
+/// Draws the picture as SVG text. `spans` are the commands that were in effect.
 pub fn draw(run: Run<'_>, spans: &[Span], caption: &Caption) -> String {
     let end = spans.last().map_or(0.0, |span| span.to);
     let chart = Chart {
@@ -82,7 +82,7 @@ impl Chart<'_> {
             let (x, end) = (self.x(*from), self.x(*to));
             let fill = if n % 2 == 0 { "#e6e6e6" } else { "#d2d2d2" };
             group = group.add(rectangle((x, COMMANDS), (end - x, 26.0), fill));
-            // About 7.5 px a letter: leave out what would run over.
+            // A letter takes about 7.5 px. A command that would not fit is left out.
             if command.len() as f64 * 7.5 < end - x {
                 let position = ((x + end) / 2.0, COMMANDS + 18.0);
                 group = group.add(text_middle(command, position, 15.0));
@@ -97,7 +97,7 @@ impl Chart<'_> {
         ))
     }
 
-    /// A line across the complete picture at each command.
+    /// A vertical line across the complete picture at each change of command.
     fn draw_marks(&self, mut group: Group) -> Group {
         for span in self.spans.iter().skip(1) {
             let x = self.x(span.from);
@@ -107,8 +107,8 @@ impl Chart<'_> {
         group
     }
 
-    /// Half the height of every strip in degrees, the same for all so that
-    /// slopes compare.
+    /// Half the height of a strip in degrees, the same for all strips so that
+    /// slopes can be compared.
     fn reach(&self) -> f64 {
         let sweeps = self
             .run
@@ -169,8 +169,8 @@ impl Chart<'_> {
         group
     }
 
-    /// The unbroken stretches of a servo's angle: (seconds, degrees). A run with
-    /// many frames to a pixel keeps the outermost of each.
+    /// A servo's angle as points (seconds, degrees), one curve for each time span with
+    /// pulses. If a pixel column has many frames, only its lowest and highest are kept.
     fn runs(&self, servo: usize) -> Vec<Vec<(f64, f64)>> {
         let dense = self.run.log.widths.len() as f64 > 4.0 * (WIDTH - LEFT - RIGHT);
         let mut runs = vec![Curve::default()];
@@ -273,8 +273,8 @@ impl Chart<'_> {
     }
 }
 
-/// A stretch of a footfall row: full for stance, pale for still, empty for
-/// swing, so that it reads without colour.
+/// One time span of a footfall row: filled for stance, pale for still, outlined for
+/// swing, so that it is readable without colour.
 fn foot(
     phase: Phase,
     colour: &str,
@@ -296,7 +296,7 @@ fn foot(
     }
 }
 
-/// A curve that is being read.
+/// A curve under construction.
 #[derive(Default)]
 struct Curve {
     points: Vec<(f64, f64)>,
@@ -304,8 +304,8 @@ struct Curve {
 }
 
 impl Curve {
-    /// Adds a point. Of the points in one column of pixels, if it has one, only
-    /// the lowest and the highest are kept.
+    /// Adds a point. Of the points in the same column of pixels, only the lowest and
+    /// the highest are kept; without a column, all are.
     fn add(&mut self, column: Option<i64>, point: (f64, f64)) {
         if column.is_none() {
             self.points.push(point);
@@ -372,7 +372,7 @@ mod tests {
         };
         let picture = picture(10_000, width, &[span("stand", 0.0, 200.0)]);
         assert!(picture.len() < 300_000, "{} bytes", picture.len());
-        // 50 us are 5 degrees, of 25 in half a strip of 104 pixels.
+        // 50 us are 5 degrees, so 10.4 pixels: half a strip has 52 pixels for 25 degrees.
         let first = picture.split("points=\"").nth(1).expect("a curve");
         let ys = first
             .split('"')

@@ -1,4 +1,4 @@
-//! The result of each command, compared with its prediction.
+//! The result of each command of a run, compared with its prediction.
 
 use std::io::{self, Write};
 
@@ -10,7 +10,7 @@ use super::replay::Replay;
 use crate::shared::json;
 use crate::shared::number::tidy;
 
-/// A row for each command.
+/// A report of a run: a row for each command.
 pub struct Report {
     /// The rows in order of time.
     pub rows: Vec<Row>,
@@ -21,21 +21,21 @@ pub struct Report {
 pub struct Row {
     /// The command as it was sent.
     pub command: String,
-    /// The time of its first frame and of its end, s since power-on.
+    /// Times of the command's first frame and of its end, s since power-on.
     pub seconds: [f64; 2],
-    /// The complete path under the command.
+    /// Displacement of the body over the whole command.
     pub way: PathParts,
     /// The gait's last complete cycle, and its prediction.
     pub cycle: Option<Cycle>,
-    /// The path that `lizard gaits` predicts for one round of a routine without inputs, by these
-    /// servos; null for other commands and at another pace.
+    /// Displacement that `lizard gaits` predicts for one round of a routine with these servos; null
+    /// for a routine with inputs, for other commands, and at another pace.
     pub round: Option<PathParts>,
     /// Distance that each foot slid over the floor, mm, servo order. This and the figures below are
-    /// of the last complete cycle, if it follows another at the gait's own pace, else of all frames.
+    /// those of the cycle in `cycle`, or of all frames of the command if that is null.
     pub foot_slip: [f64; 4],
     /// The largest lag of a leg behind its servo, deg.
     pub lag: f64,
-    /// The smallest margin and its name.
+    /// The name and the value of the smallest margin.
     pub margin: Option<(&'static str, f64)>,
     /// Least and greatest slider travel, mm.
     pub stroke: Option<[f64; 2]>,
@@ -45,7 +45,7 @@ pub struct Row {
     pub servo_error: f64,
 }
 
-/// A path; null for a part that depends on a tie.
+/// A displacement; a part is null if the model cannot decide it because two feet pull against two.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct PathParts {
     /// Distance forward, mm.
@@ -59,14 +59,14 @@ pub struct PathParts {
 /// One cycle of a gait.
 #[derive(Debug, Serialize)]
 pub struct Cycle {
-    /// The path of the cycle.
+    /// The displacement by the cycle.
     pub way: PathParts,
-    /// The path that the contact model predicts for ideal servos.
+    /// The displacement that the contact model predicts for ideal servos.
     pub predicted: PathParts,
-    /// Mean speed over the cycle, mm/s; null if the path depends on a tie.
+    /// Mean speed over the cycle, mm/s; null if the displacement is undecided.
     pub speed: Option<f64>,
-    /// Distance relative to rigid legs, by the prediction; null if legs are rigid or there is
-    /// none to compare.
+    /// Predicted movement as a share of that with rigid legs; null if the legs are rigid, or if
+    /// rigid legs hardly move or are undecided.
     pub share_of_rigid: Option<f64>,
 }
 
@@ -106,8 +106,8 @@ impl PathParts {
 }
 
 impl Report {
-    /// Sums up a replay. With `is_paced`, gaits went at other speeds than their own, and
-    /// their cycles are not reported.
+    /// Sums up a replay. `is_paced` is true if gaits went at other speeds than their own; cycles
+    /// and predicted rounds are then left out.
     pub fn of(robot: &Robot, replay: &Replay, model: ServoModel, is_paced: bool) -> Self {
         let rows = replay
             .stages
@@ -139,7 +139,7 @@ impl Report {
                     }),
                     share_of_rigid: SpringCost::of(gait, robot.ground()).and_then(|on| on.share),
                 }),
-                // Contacts may end a step earlier or later than the prediction takes for granted.
+                // A contact may end a step earlier or later than the prediction assumes.
                 round: round
                     .filter(|(round, _)| !round.has_inputs)
                     .map(|(_, way)| way.into()),
@@ -158,7 +158,7 @@ impl Report {
         }
     }
 
-    /// One object a line.
+    /// Writes the rows as JSON, one object per line.
     ///
     /// # Errors
     /// Fails if writing fails.
@@ -169,7 +169,7 @@ impl Report {
         Ok(())
     }
 
-    /// A table of the gaits' cycles, and a line for each other command that moved the
+    /// Prints a table of the gaits' cycles, and a line for each other command that moved the
     /// body.
     ///
     /// # Errors
@@ -253,13 +253,13 @@ impl Report {
     }
 }
 
-/// A path in words.
+/// Describes a displacement in words.
 fn sentence(way: &PathParts) -> String {
     let [forward, left, turn] = [way.forward, way.left, way.turn].map(|part| format_part(part, 1));
     format!("ahead {forward} mm, left {left} mm, turn {turn} deg")
 }
 
-/// A part of a path with its sign, except for zero; a dash if it is unknown.
+/// Formats a part of a displacement with its sign, never `-0`; a dash if it is unknown.
 pub fn format_part(part: Option<f64>, decimals: usize) -> String {
     part.map_or("-".to_owned(), |value| {
         format!("{:+.decimals$}", tidy(value, decimals as i32))

@@ -1,4 +1,4 @@
-//! The floor and the pads on it, in the file.
+//! The floor and the pads on it, in the MJCF file.
 
 use super::document::CONTACT;
 use crate::model::floor::{Block, Floor};
@@ -11,14 +11,14 @@ use lizard_robot::servo::LEGS;
 /// Height of a flat pad, mm.
 const FLAT: f64 = 3.0;
 
-/// The attributes of a disc of a radius and a height, mm.
+/// The MJCF attributes of a disc of this radius and height, mm.
 fn disc(radius: f64, high: f64) -> String {
     let [radius, half] = [radius, high / 2.0].map(|length| round(length * MILLI));
     format!(r#"type="cylinder" size="{radius} {half}""#)
 }
 
 impl Floor {
-    /// Gravity as the floor feels it: right, forward, up, m/s^2.
+    /// Gravity in the frame of the inclined floor: right, forward, up, m/s^2.
     pub(super) fn gravity(&self) -> String {
         let (sin, cos) = self.rises.to_radians().sin_cos();
         joined([0.0, -GRAVITY * sin, -GRAVITY * cos].map(round))
@@ -36,7 +36,7 @@ impl Writer<'_> {
                 size,
                 turned,
             } = block;
-            // Half of it is under the floor, where nothing comes.
+            // The box is twice as high as the block; its lower half is under the floor.
             let [wide, long, high] = *size;
             let (half, at) = (
                 metres([wide / 2.0, long / 2.0, high]),
@@ -49,8 +49,8 @@ impl Writer<'_> {
         }
     }
 
-    /// A pad. Viewers hide it and show the part. It has friction against sliding only, not
-    /// against turning or rolling, and the same on all that lies on the floor.
+    /// Writes a pad's contact shape; viewers hide it and show the part. It has friction against
+    /// sliding only, not against turning or rolling, and the same on the floor and its blocks.
     pub(super) fn write_pad(&mut self, servo: usize) {
         let pad = self.assembly.robot().parts().pad;
         let [x, y, middle] = self.pad_middle(servo);
@@ -61,7 +61,7 @@ impl Writer<'_> {
                 self.write_pad_shape(servo, "", &shape, [x, y, lowest + radius]);
             }
             Pads::Terraces(layer) => {
-                // A layer is as wide as the dome in the layer's middle.
+                // A layer has the dome's radius at the middle of the layer's height.
                 let wide = |up: f64| (up * (2.0 * pad.radius - up)).sqrt();
                 let layers = (0..).map(|number| (f64::from(number) + 0.5) * layer);
                 let layers = layers.take_while(|up| wide(*up) < pad.width / 2.0);

@@ -5,12 +5,12 @@ use lizard_robot::servo::{LEGS, NAMES};
 use crate::model::text::{MILLI, metres, round};
 use crate::model::writer::Writer;
 
-/// The size of a pad's site as a share of its dome: contacts lie a little outside of the dome.
+/// Radius of a pad's site as a share of its dome's: contacts lie a little outside the dome.
 const SITE: f64 = 1.05;
 
 impl Writer<'_> {
-    /// Writes the servos' angles, rates and torques, the force on each pad, and the place, the
-    /// direction and the rates of the chassis.
+    /// Writes sensors for the servos' angles, rates and torques, the force on each pad, and the
+    /// position, the orientation and the velocities of the chassis.
     pub(super) fn write_sensors(&mut self) {
         self.xml.open("sensor");
         for name in NAMES {
@@ -34,7 +34,7 @@ impl Writer<'_> {
         self.xml.close();
     }
 
-    /// The place on a pad where its load is measured.
+    /// Writes the site on a servo's pad at which the pad's load is measured.
     pub(super) fn write_pad_site(&mut self, servo: usize) {
         let radius = self.assembly.robot().parts().pad.radius;
         let (leg, at) = (LEGS[servo], metres(self.pad_middle(servo)));

@@ -1,4 +1,4 @@
-//! The condition of a side over a cell: the length of its slider.
+//! The condition of a side over a cell: its slider stays within its stroke.
 //!
 //! While the crank angles go from the cell's centre to any other pose of it, the tips of
 //! the arms move by at most arm times angle, and the slider's length by as much. With the
@@ -12,7 +12,7 @@ use lizard_kinematics::{Lizard, Side, Slider};
 use super::cell::{Cell, Condition, HAIR, Verdict};
 use crate::measures::scale;
 
-/// The stroke condition of a side.
+/// The condition that a side's slider stays within its stroke.
 pub(super) struct StrokeCondition {
     side: Side,
     slider: Slider,

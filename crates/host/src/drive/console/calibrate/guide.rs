@@ -1,7 +1,7 @@
 //! The steps of a calibration: the robot's movements in each, and the effect of each key.
 //!
-//! The signs are proven before the trims: a servo with the wrong sign would turn away from the
-//! arrow.
+//! The signs are checked before the trims: with the wrong sign a servo would turn against the
+//! arrow keys.
 
 use std::io::{Read, Write};
 use std::time::Duration;
@@ -15,15 +15,15 @@ use crate::drive::clock::Deadline;
 use step::{STEPS, Step};
 pub use view::View;
 
-/// Angles by which a servo is moved to prove its sign, degrees; the first that the robot
+/// Angles by which a servo is moved to check its sign, degrees; the first that the robot
 /// accepts is used.
 const SIGN_ANGLES: [f64; 4] = [10.0, 5.0, -10.0, -5.0];
 /// Angles by which a servo is moved to measure its scale, degrees; the first that the robot
 /// accepts is used. A larger angle measures more exactly.
 const SCALE_ANGLES: [f64; 6] = [30.0, -30.0, 20.0, -20.0, 10.0, -10.0];
-/// The longest time that a motion may take to end.
+/// The longest time to wait for the end of a motion.
 const MOTION_TIMEOUT: Duration = Duration::from_secs(5);
-/// Interval between two questions for the robot's status.
+/// Interval between two `status` commands during that wait.
 const LOOK: Duration = Duration::from_millis(25);
 
 /// A key with a meaning in the guide.
@@ -33,7 +33,7 @@ pub enum Key {
     Next,
     /// Go to the previous step.
     Back,
-    /// Leave; nothing is changed.
+    /// Leave, and drop the changes since the last save.
     Leave,
     /// Perform the action of the step.
     Act,
@@ -56,7 +56,7 @@ pub struct Guide<'a, P> {
     /// The neutral angles, degrees.
     neutral: [f64; 4],
     at: usize,
-    /// The angle by which the servo of this step was moved, if it was.
+    /// The angle by which this step has moved its servo, degrees; `None` if it has not.
     moved: Option<f64>,
     /// True if scales and limits are skipped.
     skips_scales: bool,
@@ -65,7 +65,7 @@ pub struct Guide<'a, P> {
 }
 
 impl<'a, P: Read + Write> Guide<'a, P> {
-    /// Reads the robot's calibration, and lets it stand.
+    /// Reads the robot's calibration, and makes the robot stand.
     ///
     /// # Errors
     /// Fails if there is no answer, or the robot cannot stand.
@@ -95,10 +95,11 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         self.step() == Step::Saved
     }
 
-    /// Handles a key; true when the user has finished or cancelled.
+    /// Handles a key. Returns true when the user has finished or cancelled.
     ///
     /// # Errors
-    /// Fails if the connection breaks. A refusal is not an error: it is shown.
+    /// Fails if the connection breaks, or the robot refuses to restore the calibration when the
+    /// user leaves. Other refusals are not errors: they are shown.
     pub fn press_key(&mut self, key: Key) -> Result<bool, LinkError> {
         self.message.clear();
         let is_done = match (key, self.step()) {
@@ -160,10 +161,10 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         Ok(())
     }
 
-    /// Restores the calibration of the beginning, and lets the robot stand.
+    /// Makes the robot stand, and restores the calibration of the beginning or the last save.
     fn leave(&mut self) -> Result<(), LinkError> {
         match self.stand() {
-            // The supply may be too low for it; the guide ends all the same.
+            // The supply may be too low to stand; the guide ends anyway.
             Ok(()) | Err(LinkError::Refused { .. }) => {}
             Err(error) => return Err(error),
         }
@@ -206,7 +207,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         Ok(())
     }
 
-    /// Moves one servo by the first of some angles that the robot does not refuse.
+    /// Moves one servo by the first of these angles (degrees) that the robot accepts.
     fn move_one(&mut self, servo: usize, angles: &[f64]) -> Result<(), LinkError> {
         self.stand()?;
         let mut refusal = None;
@@ -223,7 +224,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         refusal.map_or(Ok(()), Err)
     }
 
-    /// Moves one servo by an angle from its neutral pose, the others to theirs.
+    /// Moves one servo to this many degrees from its neutral angle, and the others to theirs.
     fn turn_to(&mut self, servo: usize, degrees: f64) -> Result<(), LinkError> {
         let mut pose = self.neutral;
         pose[servo] = (pose[servo] + degrees).rem_euclid(360.0);
@@ -235,8 +236,8 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         Ok(())
     }
 
-    /// Sets the scale with which a servo that was moved turns by this many degrees more. Its
-    /// neutral pulse stays, so its trim is converted to the new degrees.
+    /// Changes the scale of the servo that was moved so that it turns this many degrees further
+    /// counter-clockwise. Its neutral pulse stays the same, so its trim is converted, too.
     fn scale(&mut self, servo: usize, degrees: f64) -> Result<(), LinkError> {
         let Some(ordered) = self.moved else {
             self.message = "Press the space bar first, and look where it points.".to_owned();
@@ -258,8 +259,8 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         Ok(())
     }
 
-    /// Moves an end of a servo's travel by one degree: its first one with the keys that turn
-    /// far, its second with those that turn little.
+    /// Moves one end of a servo's travel by one degree in the direction of `degrees`: the first
+    /// end for the keys of 0.5 degrees, the second for those of 0.1.
     fn limit(&mut self, servo: usize, degrees: f64) -> Result<(), LinkError> {
         let mut next = self.now.clone();
         let servo_settings = &mut next.servos[servo];
@@ -317,7 +318,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         Ok(())
     }
 
-    /// `walk`, or the first gait that the robot has besides `stand`.
+    /// `walk` if the robot has it, else its first gait besides `stand`, else `stand`.
     fn first_gait(&mut self) -> Result<String, LinkError> {
         let help = self.link.command("help")?;
         let gaits = help
@@ -336,7 +337,7 @@ fn hundredths(value: f64) -> f64 {
     (value * 100.0).round() / 100.0 + 0.0
 }
 
-/// Waits until the robot stands still, and returns its pose.
+/// Waits until the robot stands still, at most [`MOTION_TIMEOUT`], and returns its pose, degrees.
 fn settle<P: Read + Write>(link: &mut Link<P>) -> Result<[f64; 4], LinkError> {
     let mut deadline = Deadline::after(MOTION_TIMEOUT);
     let mut last: Option<Status> = None;

@@ -59,7 +59,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         }
         Err(TurnError::Io(error)) => Err(error.into()),
         Err(TurnError::File(failure)) => Err(failure),
-        // Opening the port resets the board, so what was not saved is gone then.
+        // Opening the port again resets the board, so unsaved settings are lost then.
         Err(TurnError::Link(error)) => Err(Failure::Impossible(format!(
             "{}: {error}; what was not saved is lost when the port is opened again",
             board.name
@@ -67,8 +67,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
 }
 
-/// Shows the steps until the user is done; true if the calibration was saved. Closing the
-/// terminal cancels it.
+/// Shows the steps until the user is done; returns true if the calibration was saved. Closing
+/// the terminal cancels it.
 fn with_keys<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, TurnError> {
     match steps(guide) {
         Err(TurnError::Io(_)) if !terminal::is_there() => {
@@ -92,8 +92,8 @@ fn steps<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, Turn
         if !terminal::is_there() {
             return Err(io::Error::from(io::ErrorKind::UnexpectedEof).into());
         }
-        // Polled without waiting: crossterm never returns from a wait for a terminal that is
-        // closed meanwhile.
+        // Polls without waiting: if the terminal is closed during a wait, crossterm never returns
+        // from it.
         if !event::poll(Duration::ZERO)? {
             if last_read.elapsed() >= TURN {
                 guide.idle()?;
@@ -127,7 +127,7 @@ fn is_suspend(key: KeyEvent) -> bool {
     key.code == KeyCode::Char('z') && key.modifiers.contains(KeyModifiers::CONTROL)
 }
 
-/// The meaning of a key, if it has one.
+/// The meaning of a pressed key; `None` if it has none here.
 fn meaning(key: KeyEvent) -> Option<Key> {
     if key.kind == KeyEventKind::Release {
         return None;
@@ -202,7 +202,7 @@ impl Page {
 
 impl Drop for Page {
     fn drop(&mut self) {
-        // The terminal may be gone; then nothing is left to be done.
+        // The terminal may be gone; then there is nothing to restore.
         let _ = self.leave();
         let _ = mode::disable_raw_mode();
     }

@@ -1,4 +1,4 @@
-//! A session in a few lines.
+//! The summary of a recorded session in a few lines.
 
 use std::io::{self, Write};
 
@@ -7,7 +7,7 @@ use super::super::recorder::Event;
 use super::super::status::Status;
 use super::session::Session;
 
-/// Prints the session's length, commands, smallest margin, supplies and problems.
+/// Prints the session's length, commands, smallest margin, supply voltages and problems.
 pub(super) fn print(session: &Session, out: &mut impl Write) -> io::Result<()> {
     let entries = &session.entries;
     let count = |is: fn(&Event) -> bool| entries.iter().filter(|entry| is(&entry.event)).count();
@@ -84,7 +84,7 @@ pub(super) fn print(session: &Session, out: &mut impl Write) -> io::Result<()> {
     Ok(())
 }
 
-/// True if a note reports a problem. A banner in the middle of a session is a reset.
+/// True if a note reports a problem. A banner in the middle of a session means a reset.
 fn is_trouble(note: &str) -> bool {
     ["# fault: ", "# supply: ", "# held ", BANNER]
         .iter()

@@ -215,7 +215,7 @@ fn lines_that_fail_are_counted_once_and_the_first_is_named() {
     );
 }
 
-/// The lines that are sent while the robot answers each by `answer`.
+/// Runs the session for `ms`; returns the lines that it sends, with their times in ms.
 fn sent(
     session: &mut Session,
     from: Instant,

@@ -48,7 +48,7 @@ fn run_with(board: Double, image: &Image) -> Run {
     run_as(board, image, Target::default())
 }
 
-/// Uploads to a board with these known facts.
+/// Uploads to a board; `target` is known about it beforehand.
 fn run_as(board: Double, image: &Image, target: Target) -> Run {
     let timeouts = Timeouts {
         blinks: Duration::ZERO,
@@ -73,7 +73,7 @@ fn run_as(board: Double, image: &Image, target: Target) -> Run {
 }
 
 impl Run {
-    /// Checks that the board has the image, was told to start it, and has its boot loader.
+    /// Checks that the board has the image, was told to start it, and kept its boot loader.
     fn assert_written(&self) -> Done {
         let done = *self.result.as_ref().expect("it is written");
         let (flash, blank) = (&self.board.flash, Double::blank().flash);
@@ -108,7 +108,7 @@ fn robot_name(board: &Double) -> Option<String> {
     robot_in(&board.flash[..BOOT]).map(|robot| robot.label().map(char::from).collect())
 }
 
-/// The code with the robot of this file.
+/// The firmware's image with the robot of the robot file of this name.
 fn whole_image(name: &str) -> Image {
     file::image(&robot(name)).expect("it fits")
 }
@@ -237,7 +237,7 @@ fn any_one_byte_lost_on_the_way_to_the_board_is_recovered() {
     let old = [9; 500];
     let whole = run(Double::with(&old)).board;
     assert!(whole.received > 2000, "{} bytes", whole.received);
-    // A page is read by 9 bytes: with steps of 7, each of them has its turn.
+    // Reading a page sends 9 bytes: steps of 7 lose each of the 9 at some page.
     for at in (0..whole.received).step_by(7) {
         let mut board = Double::with(&old);
         board.lost_to = Some(at);
@@ -254,7 +254,7 @@ fn any_one_byte_lost_on_the_way_from_the_board_is_recovered() {
     let old = [9; 500];
     let whole = run(Double::with(&old)).board;
     assert!(whole.sent > 30_000, "{} bytes", whole.sent);
-    // The call and the first pages byte by byte, the rest here and there.
+    // Each byte of the call and of the first pages, then every 101st byte.
     for at in (0..300).chain((300..whole.sent).step_by(101)) {
         let mut board = Double::with(&old);
         board.lost_from = Some(at);

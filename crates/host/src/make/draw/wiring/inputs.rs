@@ -1,6 +1,7 @@
-//! The option of a push button and an obstacle switch, where robot.toml has `[input]`.
+//! The panel with the optional push button and obstacle switch, drawn if robot.toml has `[input]`.
 //!
-//! Either makes its pin low. The board's own pull-up makes it high else, so there is no resistor.
+//! When active, each pulls its pin low. Otherwise the board's own pull-up holds the pin high, so no
+//! resistor is needed.
 
 use lizard_robot::Robot;
 use svg::node::element::Group;
@@ -10,18 +11,18 @@ use crate::shared::ink::{
     DARK, GREY, ORANGE, RED, circle, curve, edged, line, pin_name, rectangle, text_end, text_start,
 };
 
-/// Height of the panel.
+/// Height of the panel, pixels.
 const HEIGHT: f64 = 214.0;
-/// The board's pins, and those of button and module.
+/// x of the board's pins, and of the pins of button and module, pixels.
 const BOARD: f64 = 120.0;
 const THING: f64 = 400.0;
 /// Pixels from a row to the next one.
 const ROW: f64 = 26.0;
-/// The first rows of button and module, below the panel's top.
+/// Distances of the first rows of button and module from the panel's top, pixels.
 const BUTTON: f64 = 58.0;
 const NOSE: f64 = 122.0;
 
-/// Height of the panel of a robot; 0 if it has no inputs.
+/// Height of a robot's panel, pixels; 0 if the robot has no inputs.
 pub fn height(robot: &Robot) -> f64 {
     match robot.inputs().each().count() {
         0 => 0.0,
@@ -29,7 +30,7 @@ pub fn height(robot: &Robot) -> f64 {
     }
 }
 
-/// The panel with its upper edge at a height.
+/// Draws the panel with its upper edge at y = `top`.
 pub fn draw(robot: &Robot, top: f64) -> Group {
     let frame = rectangle((16.0, top), (668.0, HEIGHT - 12.0), "#fbfbf4").set("rx", 8);
     let frame = edged(frame, GREY, 1.5).set("stroke-dasharray", "7 5");
@@ -46,10 +47,10 @@ pub fn draw(robot: &Robot, top: f64) -> Group {
     group
 }
 
-/// A wire from the board to a pin of a thing, with the names of both.
+/// A wire from the board to a component; `names` are the component, the board's pin, and a label.
 fn wire(group: Group, names: [&str; 3], y: f64, colour: &'static str) -> Group {
     let [thing, of_board, of_thing] = names;
-    // On its own ground it crosses nothing, and a white edge would cut the frame.
+    // The wire crosses no other, and a white edge would cut the component's outline.
     let path = curve(&[(BOARD, y), (THING, y)], colour, THIN);
     group
         .add(path.set("id", format!("input-{thing}-{of_board}")))

@@ -1,4 +1,4 @@
-//! Every way through a function, with the bytes on the stack at each instruction.
+//! Follows every path through a function and counts the bytes on the stack at each instruction.
 
 use std::collections::HashMap;
 
@@ -13,7 +13,7 @@ const RETURN_ADDRESS: i32 = 2;
 /// The context in which the analysed code runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Context {
-    /// The program from reset on.
+    /// The main program, from reset on.
     Main,
     /// An interrupt's handler, with interrupts off.
     Interrupt,
@@ -22,9 +22,9 @@ pub enum Context {
 /// The contents of r29:r28.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Pointer {
-    /// Something that does not matter here.
+    /// An unknown value.
     Unknown,
-    /// The stack pointer with this many bytes pushed since the function's beginning.
+    /// The stack pointer when this many bytes were pushed since the function's beginning.
     Depth(i32),
     /// A constant address.
     Address(u16),
@@ -42,15 +42,15 @@ struct State {
     room: Option<u8>,
 }
 
-/// Shared beginnings and ends of functions (`tools/linker/src/frames.S`), by their addresses.
+/// Shared prologues and epilogues (`tools/linker/src/frames.S`): bytes saved, by address.
 struct Shared {
     save: HashMap<u32, i32>,
     restore: HashMap<u32, i32>,
 }
 
 impl Shared {
-    /// Finds the shared routines of an image. Besides the room in r26, each saves the registers
-    /// from its own to r17, and r28 and r29.
+    /// Finds the shared routines of an image. Routine K saves rK to r17, r28 and r29, which are
+    /// 20 - K bytes, besides the room given in r26.
     fn of(image: &Image) -> Self {
         let all = |prefix: &str| {
             let bytes = |symbol: &simulated_uno::Symbol| {
@@ -66,7 +66,7 @@ impl Shared {
     }
 }
 
-/// The functions analysed so far.
+/// The stack analysis of an image, with the functions analysed so far.
 pub struct Walk<'a> {
     image: &'a Image,
     flash: &'a [u8],
@@ -79,13 +79,13 @@ pub struct Walk<'a> {
 /// The effect of a function on the stack.
 #[derive(Debug, Clone, Copy)]
 pub struct Function {
-    /// The most bytes of stack in the function and all that it calls, without its own return
+    /// The most bytes of stack that the function and all its callees use, without its own return
     /// address.
     pub depth: u16,
-    /// True if the function returns. Code after a call of one that does not return does not belong
-    /// to the caller.
+    /// True if the function returns. Code after a call of a function that does not return is not
+    /// part of the caller.
     pub returns: bool,
-    /// The address at which a handler enables other interrupts, if it does.
+    /// The byte address at which a handler enables other interrupts, if it does.
     pub lets_in: Option<u32>,
 }
 
@@ -145,7 +145,7 @@ impl<'a> Walk<'a> {
             let room = state.room.take().map(i32::from);
             let mut next_addresses = vec![next];
             match instruction.effect {
-                // The shortest way to make room for two bytes.
+                // A call of the next instruction: short code that makes room for two bytes.
                 Effect::Call(target) if target == next => state.depth += RETURN_ADDRESS,
                 Effect::Call(target) if self.shared.save.contains_key(&target) => {
                     let Some(room) = room else {
@@ -153,7 +153,7 @@ impl<'a> Walk<'a> {
                     };
                     state.depth += self.shared.save[&target] + room;
                     state.pointer = Pointer::Depth(state.depth);
-                    // Its own way back lies below what it made room for.
+                    // Its own return address lies below the room that it makes.
                     worst = worst.max(state.depth + RETURN_ADDRESS);
                 }
                 Effect::Jump(target) if self.shared.restore.contains_key(&target) => {
@@ -217,7 +217,7 @@ impl<'a> Walk<'a> {
         })
     }
 
-    /// An error of the function at `entry`.
+    /// Makes an error of the function at `entry`, found at the instruction at `address`.
     pub fn refuse(&self, entry: u32, address: u32, what: &'static str) -> StackError {
         let is_before = |symbol: &&simulated_uno::Symbol| {
             symbol.is_function && u64::from(entry) >= symbol.address
@@ -236,8 +236,8 @@ const ROOM: &str = "makes room of an unknown size";
 const POINTER: &str = "sets the stack pointer to something unknown";
 
 impl State {
-    /// Follows an instruction that only works on the stack and its pointer. False if
-    /// the stack pointer is then unknown.
+    /// Applies an instruction that only changes the stack or its pointer. Returns false
+    /// if the stack pointer would become unknown.
     fn apply(&mut self, effect: Effect) -> bool {
         let add = |pointer: Pointer, change: i16| match pointer {
             Pointer::Depth(depth) => Pointer::Depth(depth - i32::from(change)),
@@ -251,7 +251,7 @@ impl State {
             Effect::StackFromPointer => {
                 self.depth = match self.pointer {
                     Pointer::Depth(depth) => depth,
-                    // The beginning of a program: from the end of SRAM down.
+                    // Startup code sets a constant: the stack grows down from the end of SRAM.
                     Pointer::Address(address) => i32::from(SRAM_END - 1) - i32::from(address),
                     Pointer::Unknown => return false,
                 }

@@ -14,9 +14,9 @@ pub struct View {
     pub title: String,
     /// The lines of instructions for the user.
     pub text: Vec<String>,
-    /// The keys that have a meaning now.
+    /// The keys that have an effect in this step.
     pub keys: String,
-    /// The effect of the last key.
+    /// The result of the last key, in words.
     pub message: String,
 }
 

@@ -1,4 +1,4 @@
-//! An old Nano: slower, and with less room below its boot loader.
+//! Uploads to an old Nano: its boot loader has a lower baud rate and leaves less flash free.
 
 use super::*;
 
@@ -49,7 +49,7 @@ fn a_byte_lost_on_the_way_to_an_old_nano_is_recovered_at_its_speed() {
 
 #[test]
 fn an_image_that_reaches_into_a_nanos_boot_section_is_refused() {
-    // Of the robots in the repository the one with the most gaits.
+    // The robot with the most gaits in the repository.
     let image = whole_image("own-gaits");
     assert!(image.end() > 0x7800, "{:#x}", image.end());
     let refused = |mut board: Double, target: Target| {
@@ -72,7 +72,7 @@ fn an_image_that_reaches_into_a_nanos_boot_section_is_refused() {
     assert!(words.starts_with(&needed), "{words}");
     assert!(words.ends_with("Nothing was written"), "{words}");
     assert_eq!(words, refused(Double::blank(), named(Model::Nano)));
-    // A newer Nano talks like a UNO, and its USB chip is on copies of the UNO, too.
+    // A newer Nano answers like a UNO, and copies of the UNO have the same USB chip.
     let in_doubt = Target {
         may_be_nano: true,
         ..any
@@ -86,7 +86,7 @@ fn an_image_that_reaches_into_a_nanos_boot_section_is_refused() {
         let run = run_as(Double::blank(), &image, target);
         assert!(run.result.is_ok(), "{}", run.error());
     }
-    // What is short enough is written without a question.
+    // An image that fits a Nano, too, is written without a question.
     let run = run_as(Double::blank(), &whole_image("paper"), in_doubt);
     assert!(run.result.is_ok(), "{}", run.error());
 }
