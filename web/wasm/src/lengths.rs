@@ -1,7 +1,7 @@
 //! Changed lengths of a robot and, if they are refused, valid alternatives.
 //!
-//! There are two, each checked as a complete robot: the nearest accepted lengths between those of the
-//! text and those wanted, and the lengths wanted without the gait that forbids them.
+//! There are two, each checked as a complete robot: the nearest accepted lengths between those of
+//! the text and those wanted, and the lengths wanted without the gait that forbids them.
 
 use lizard_robot::Robot;
 use lizard_robot::edit::{NoSuchKey, with_number, without_gait};
