@@ -300,6 +300,7 @@ PREFIX ?= $(HOME)/.local
 .addresses-test:
 	@scripts/setup-web
 	@scripts/setup-book
+	@scripts/build-web
 	@scripts/addresses-test
 
 # Not a part of .ci/run: it compiles everything three more times.
