@@ -2,7 +2,7 @@
 //! memories, through the core on this machine: each line has one answer, no pulse
 //! is outside the limits, and the memory is always valid.
 //!
-//! `LIZARD_FUZZ=5`, as continuous integration has it, takes five times as many.
+//! `LIZARD_FUZZ=3`, as continuous integration has it, takes three times as many.
 
 use std::thread;
 
