@@ -1,5 +1,5 @@
 // The robot in WebAssembly, which computes everything; no formula is repeated in TypeScript. Its types are those of wasm/src.
-import { type Description, type Floor, type GaitPrediction, initSync, type Refused, Robot } from '../generated/lizard';
+import { type Description, type DrawnGait, type Floor, type GaitPrediction, initSync, type NoTrial, type Refused, Robot } from '../generated/lizard';
 
 export { calibrationText, isSameCalibration, parseCalibration, readCalibration, reversedServo, Robot, scaledServo, Transfer } from '../generated/lizard';
 export type {
@@ -11,9 +11,9 @@ export type {
 
 export type Gait = Description['gaits'][number];
 export type Length = Description['lengths'][number];
-export type End = 'head' | 'tail';
+export type End = DrawnGait['end'];
 /** The values that may be too large in an edited gait. */
-export type Alternative = 'amplitude' | 'size' | 'period';
+export type Alternative = NoTrial['instead'][number]['what'];
 /** The predictions of a robot's gaits in their order; null for what is no gait. */
 export type Predictions = (GaitPrediction | null)[];
 
