@@ -51,8 +51,7 @@ fn write(path: &Path, bytes: &[u8]) {
     }
 }
 
-/// Ends the build. `cargo::error` puts the message first, before the list of
-/// what else the script printed.
+/// Ends the build. `cargo::error` puts the message first, before the script's other output.
 fn stop(message: &str) -> ! {
     println!("cargo::error={message}");
     exit(1)

@@ -1,9 +1,9 @@
-//! The mark of the code in the first page of flash, by which it is known before it runs.
+//! The mark in the first page of flash, by which a host identifies the code without running it.
 
 use lizard_core::numbers::mark::{LENGTH, Mark};
 
-/// Nothing but the linker reads it: this section comes first after the interrupt vectors,
-/// at [`lizard_core::numbers::mark::AT`], and a test looks for it there.
+/// Read by no code of the firmware. The linker places this section first after the interrupt
+/// vectors, at [`lizard_core::numbers::mark::AT`], and a test looks for it there.
 #[used]
 #[unsafe(no_mangle)]
 #[unsafe(link_section = ".progmem.gcc.mark")]

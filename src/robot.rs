@@ -6,8 +6,8 @@
 
 use lizard_core::numbers::section::SPACE;
 
-/// The section of robot.toml, which the build script has made. Nothing but the linker
-/// reads it: it puts it at [`lizard_core::numbers::section::START`].
+/// The section of robot.toml, which the build script has made. No code refers to it; the
+/// linker places it at [`lizard_core::numbers::section::START`].
 #[used]
 #[unsafe(no_mangle)]
 #[unsafe(link_section = ".robot")]

@@ -1,5 +1,5 @@
-//! The note in the ELF file by which stock simavr knows chip, clock and voltages. It is not
-//! part of the flash; without it simavr assumes a supply of 3.3 V, too low to move.
+//! The note in the ELF file that tells stock simavr the chip, the clock and the voltages. It is not
+//! part of the flash. Without it simavr assumes a supply of 3.3 V, too low to move.
 
 /// A tag of simavr's `avr_mcu_section.h` with a number of 32 bits.
 const fn number(tag: u8, value: u32) -> [u8; 6] {
@@ -7,7 +7,7 @@ const fn number(tag: u8, value: u32) -> [u8; 6] {
     [tag, 4, a, b, c, d]
 }
 
-/// Bytes of the chip's name, with its end.
+/// Length of the chip's name, padded with zeros, in bytes.
 const NAME: usize = 64;
 
 #[repr(C)]

@@ -1,10 +1,10 @@
-//! Compiles the C shim against Debian's libsimavr and links both.
+//! Build script: compiles the C shim against Debian's libsimavr and links both.
 
 use std::path::PathBuf;
 use std::process::Command;
 
-/// The version of libsimavr that the corrections were made for; with another one, tests of the data
-/// sheet fail or hang.
+/// The version of libsimavr for which the corrections were made. With another version, tests of the data sheet fail
+/// or hang.
 const TESTED: &str = "1.6";
 
 fn main() {
@@ -28,7 +28,7 @@ fn main() {
         .std("gnu11")
         .warnings(true)
         .extra_warnings(true)
-        // simavr's callbacks have parameters that most have no use for.
+        // simavr's callbacks have parameters that most of ours do not use.
         .flag("-Wno-unused-parameter")
         .try_compile("simulated_uno_shim");
     if let Err(error) = compiled {
@@ -37,8 +37,8 @@ fn main() {
              sudo apt-get install libsimavr-dev libelf-dev\n{error}"
         );
     }
-    // Where the C library is linked statically, the program can load no shared library. Without the
-    // word `static` the linker may choose libelf.so.
+    // A program that links the C library statically cannot load a shared library. Without the word `static`, the
+    // linker may choose libelf.so.
     let features = std::env::var("CARGO_CFG_TARGET_FEATURE").unwrap_or_default();
     if features.split(',').any(|feature| feature == "crt-static") {
         for library in ["simavr", "elf", "z"] {
@@ -54,17 +54,17 @@ fn main() {
     println!("cargo:rustc-link-lib=m");
 }
 
-/// The folder in which the C compiler finds a library; rustc looks only in folders that it is given.
+/// Returns the folder in which the C compiler finds a library. rustc searches only the folders that it is given.
 fn folder_of(library: &str) -> Option<PathBuf> {
     let compiler = cc::Build::new().try_get_compiler().ok()?;
     let argument = format!("-print-file-name={library}");
     let output = compiler.to_command().arg(argument).output().ok()?;
     let path = PathBuf::from(String::from_utf8(output.stdout).ok()?.trim());
-    // A compiler that does not find it prints the bare name.
+    // A compiler that does not find the library prints the bare name.
     Some(path.parent()?.to_owned()).filter(|folder| folder.is_absolute())
 }
 
-/// Ends the build if libsimavr has another version than [`TESTED`], or none that can be asked.
+/// Ends the build if pkg-config reports a version of libsimavr other than [`TESTED`], or none.
 fn check_version() {
     let mut ask = Command::new("pkg-config");
     let output = ask.args(["--modversion", "simavr"]).output();

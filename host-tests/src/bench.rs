@@ -1,8 +1,8 @@
-//! The firmware on a bench: power it on, talk to it, measure its pulses.
+//! Test bench for the firmware: powers it on, talks to it and measures its pulses.
 //!
-//! Tests of the running firmware should read like what a person does with a board:
-//! `boot`, `say("walk")`, wait some frames, look at the pulses. This is
-//! [`SimulatedBoard`] with the robot under test, where a failure ends the test.
+//! A test of the running firmware should read like the actions of a person with a board: `boot`, `say("walk")`,
+//! wait some frames, check the pulses. This is [`SimulatedBoard`] with the robot under test, and every failure ends
+//! the test.
 
 use std::ops::{Deref, DerefMut};
 use std::path::PathBuf;
@@ -19,15 +19,15 @@ use crate::robots::{robot, root};
 pub struct FirmwareBench(SimulatedBoard);
 
 impl FirmwareBench {
-    /// The firmware that `make firmware` leaves, or what `LIZARD_ELF` names.
+    /// The path of the firmware that `make firmware` builds, or of the one that `LIZARD_ELF` names.
     ///
-    /// It may have any robot: see [`FirmwareBench::image`].
+    /// The file may contain any robot: see [`FirmwareBench::image`].
     pub fn elf() -> PathBuf {
         let built = root().join("target/avr-atmega328p/release/lizard.elf");
         std::env::var_os("LIZARD_ELF").map_or(built, PathBuf::from)
     }
 
-    /// The same image with [`robot`] in it.
+    /// The firmware's image with [`robot`] in it.
     ///
     /// # Panics
     /// If there is no firmware.
@@ -36,7 +36,7 @@ impl FirmwareBench {
         IMAGE.clone()
     }
 
-    /// The same image with another robot in it.
+    /// The firmware's image with another robot in it.
     ///
     /// # Panics
     /// If there is no firmware.
@@ -46,7 +46,7 @@ impl FirmwareBench {
             .unwrap_or_else(|error| panic!("{}: {error}; make firmware", elf.display()))
     }
 
-    /// Powers the board on, by the data sheet, and waits for the banner.
+    /// Powers the board on, with the data sheet's corrections, and waits for the banner.
     ///
     /// # Panics
     /// If there is no firmware, or no banner within 500 ms.
@@ -54,7 +54,7 @@ impl FirmwareBench {
         Self::boot_with(Fidelity::DataSheet)
     }
 
-    /// [`FirmwareBench::boot`] in a chosen fidelity.
+    /// Powers the board on as [`FirmwareBench::boot`] does, in a chosen fidelity.
     ///
     /// # Panics
     /// See [`FirmwareBench::boot`].
@@ -63,7 +63,7 @@ impl FirmwareBench {
         Self(done(board))
     }
 
-    /// Powers the board on; not a cycle has passed.
+    /// Powers the board on and runs no cycle yet.
     ///
     /// # Panics
     /// If there is no firmware.
@@ -72,28 +72,28 @@ impl FirmwareBench {
         Self(board)
     }
 
-    /// A bench around any board, for programs other than the firmware.
+    /// Returns a bench around any board, for programs other than the firmware.
     pub fn with_board(board: SimulatedBoard) -> Self {
         Self(board)
     }
 
-    /// See [`SimulatedBoard::say`].
+    /// Sends a line and returns its answer: see [`SimulatedBoard::say`].
     ///
     /// # Panics
-    /// Without an answer.
+    /// If no answer comes.
     pub fn say(&mut self, line: &str) -> String {
         done(self.0.say(line))
     }
 
-    /// See [`SimulatedBoard::ask`].
+    /// Sends a line and returns its notes and its answer: see [`SimulatedBoard::ask`].
     ///
     /// # Panics
-    /// Without an answer.
+    /// If no answer comes.
     pub fn ask(&mut self, line: &str) -> (Vec<String>, String) {
         done(self.0.ask(line))
     }
 
-    /// See [`SimulatedBoard::run_ms`].
+    /// Runs the firmware for some milliseconds: see [`SimulatedBoard::run_ms`].
     ///
     /// # Panics
     /// If the firmware crashes, halts or is reset meanwhile.
@@ -101,7 +101,7 @@ impl FirmwareBench {
         done(self.0.run_ms(ms));
     }
 
-    /// See [`SimulatedBoard::time_calls`].
+    /// Times the calls of a function: see [`SimulatedBoard::time_calls`].
     ///
     /// # Panics
     /// If the ELF has no such function, or more than one.
@@ -109,7 +109,7 @@ impl FirmwareBench {
         done(self.0.time_calls(function, ms))
     }
 
-    /// See [`SimulatedBoard::run_for_frames`].
+    /// Runs the firmware for some frames and returns them: see [`SimulatedBoard::run_for_frames`].
     ///
     /// # Panics
     /// If the firmware crashes, halts or is reset meanwhile.
@@ -136,8 +136,8 @@ fn done<T>(result: Result<T, BoardError>) -> T {
     result.unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// A bench around a program that is not the firmware, its servos on the pins of
-/// the paper's robot: D9, D10, D11 and D3.
+/// Returns a bench around a program that is not the firmware, with servos on the pins of the paper's robot: D9,
+/// D10, D11 and D3.
 pub fn bench_of(uno: Uno) -> FirmwareBench {
     let pins = [9, 10, 11, 3].map(simulated_uno::Pin::d);
     FirmwareBench::with_board(SimulatedBoard::with_uno(uno, pins))

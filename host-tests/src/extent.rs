@@ -1,24 +1,24 @@
-//! The duration of tests with random inputs: short at a desk, long in continuous integration.
+//! The duration of tests with random inputs: short on a developer's machine, long in continuous integration.
 
 use std::num::NonZeroU64;
 
-/// Multiplies a count by the environment's `LIZARD_FUZZ`.
+/// Multiplies a count by the environment variable `LIZARD_FUZZ`, 1 by default.
 ///
 /// # Panics
-/// `LIZARD_FUZZ` is not a whole number from 1 on.
+/// If `LIZARD_FUZZ` is not a whole number of at least 1.
 pub fn times(count: u64) -> u64 {
     count * number("LIZARD_FUZZ", 1)
 }
 
-/// Minutes of a test's dialogue: the environment's `LIZARD_MINUTES`, or ten.
+/// Minutes of a test's dialogue: the environment variable `LIZARD_MINUTES`, 10 by default.
 ///
 /// # Panics
-/// `LIZARD_MINUTES` is not a whole number from 1 on.
+/// If `LIZARD_MINUTES` is not a whole number of at least 1.
 pub fn minutes() -> u64 {
     number("LIZARD_MINUTES", 10)
 }
 
-/// Reads a number from the environment. 0 is refused, since such a test would try nothing.
+/// Reads a number from the environment. Rejects 0, since such a test would try nothing.
 fn number(name: &str, otherwise: u64) -> u64 {
     std::env::var(name).map_or(otherwise, |given| match given.parse::<NonZeroU64>() {
         Ok(number) => number.get(),

@@ -1,9 +1,8 @@
-//! The judge: a second simulator that checks the first.
+//! Comparison of the simulated UNO with a second, independent simulator, avr8js.
 //!
-//! The simulated UNO is built on simavr, and a fault of simavr can make the firmware look
-//! better than it is. avr8js is another simulator, in another language, by other people.
-//! Both get the same image and the same bytes at the same cycles, and their results are
-//! compared: every pulse of every pin, every byte.
+//! The simulated UNO is built on simavr, and a fault of simavr can make the firmware look better than it is. avr8js
+//! is written in another language by other people. Both get the same image and the same bytes at the same cycles,
+//! and their results are compared: every pulse of every pin, and every byte.
 
 use std::fmt;
 use std::io::ErrorKind;
@@ -17,17 +16,16 @@ use simulated_uno::{Edge, Image, Pin, SerialByte};
 
 use crate::robots::root;
 
-/// Cycles at the end of a run that are not compared: one simulator may have finished a pulse
-/// or a byte there, and the other not yet.
+/// Cycles at the end of a run that are not compared: there, one simulator may already have finished a pulse or byte
+/// that the other has not.
 const LAST_CYCLES: u64 = 1_000;
 
-/// Cycles by which Timer1 starts later on avr8js, and with it all that the firmware
-/// does: simavr counts from the first cycle of the instruction that starts it, avr8js
-/// from its last. The bytes are sent so much later, too, so that they meet the firmware
-/// in the same state; then the two agree to the cycle, or not at all.
+/// Cycles by which Timer1 starts later on avr8js, and with it everything that the firmware does: simavr counts from
+/// the first cycle of the instruction that starts it, avr8js from its last. The bytes are sent later by as much, so
+/// that they meet the firmware in the same state. Then the two agree to the cycle, or not at all.
 pub const AVR8JS_LAG: i64 = 1;
 
-/// A pulse and the pin that it is on.
+/// A pulse and its pin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PinPulse {
     /// The pin.
@@ -45,19 +43,19 @@ impl fmt::Display for PinPulse {
     }
 }
 
-/// The results of a simulator for a run from power-on.
+/// The recorded outputs of one simulator in a run from power-on.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Account {
-    /// The finished pulses of all pins, in the order of their ends.
+    /// The complete pulses of all pins, in the order of their ends.
     pub pulses: Vec<PinPulse>,
     /// The bytes that the UNO sent, each with the cycle at which its stop bit ends.
     pub sent: Vec<SerialByte>,
-    /// The cycle at which the run has ended.
+    /// The cycle at which the run ended.
     pub end: u64,
 }
 
 impl Account {
-    /// The account of a simulated UNO's records since power-on.
+    /// Collects the outputs of a simulated UNO from its records since power-on.
     pub fn new(edges: &[Edge], sent: &[SerialByte], end: u64) -> Self {
         let mut rises = [None; 20];
         let mut pulses = Vec::new();
@@ -81,10 +79,10 @@ impl Account {
     }
 }
 
-/// The result of avr8js for a run, and its cost.
+/// The result of a run on avr8js, and its cost.
 #[derive(Debug, Clone, Default)]
 pub struct Verdict {
-    /// The firmware's account of the run.
+    /// The firmware's outputs in the run.
     pub account: Account,
     /// The 1024 bytes of EEPROM at the end.
     pub eeprom: Vec<u8>,
@@ -92,12 +90,11 @@ pub struct Verdict {
     pub cpu_ms: u64,
 }
 
-/// Runs an image on avr8js. `received` are the bytes that the serial line brings
-/// and the cycles at which each is complete on simavr, `end` the cycle at which the
-/// run ends.
+/// Runs an image on avr8js. `received` are the bytes on the serial line, each with the cycle at which it is
+/// complete on simavr; `end` is the cycle at which the run ends.
 ///
 /// # Errors
-/// Returns a message: what is missing, or what avr8js cannot simulate.
+/// Returns a message that names a missing program, or a feature that avr8js cannot simulate.
 pub fn judge(
     image: &Image,
     received: &[SerialByte],
@@ -130,16 +127,15 @@ pub fn judge(
     Ok(verdict)
 }
 
-/// Runs the judge's own tests, which show each fault of avr8js and that it is
-/// corrected.
+/// Runs the judge's own tests, which show each fault of avr8js and its correction.
 ///
 /// # Errors
-/// Fails for a missing program, or the tests that fail.
+/// Fails if a program is missing or a test fails.
 pub fn own_tests() -> Result<String, String> {
     let folder = judge_folder().join("test");
     let files = std::fs::read_dir(&folder).map_err(|error| error.to_string())?;
     let paths = files.filter_map(|file| Some(file.ok()?.path()));
-    // Files by name, because versions of Node treat a folder differently.
+    // The files are named one by one, because versions of Node treat a folder differently.
     let tests = paths.filter(|path| path.to_string_lossy().ends_with(".test.js"));
     run_program(node()?.arg("--test").args(tests), "nodejs", "")
 }
@@ -148,7 +144,7 @@ fn judge_folder() -> PathBuf {
     root().join("tools/judge")
 }
 
-/// Returns Node, if all its packages that the judge needs are installed.
+/// Returns the command for Node, if the package avr8js is installed.
 fn node() -> Result<Command, String> {
     let package = judge_folder().join("node_modules/avr8js/package.json");
     if !package.exists() {
@@ -176,7 +172,7 @@ fn run_program(command: &mut Command, debian: &str, input: &str) -> Result<Strin
     Err(format!("{program} fails: {}\n{printed}", complaint.trim()))
 }
 
-/// Reads what tools/judge/run.js prints; its head explains the lines.
+/// Parses the output of tools/judge/run.js, whose head explains the lines.
 fn read(printed: &str) -> Option<Verdict> {
     let mut verdict = Verdict::default();
     for line in printed.lines() {
@@ -205,14 +201,14 @@ fn read(printed: &str) -> Option<Verdict> {
     (verdict.eeprom.len() == 1024).then_some(verdict)
 }
 
-/// The comparison of two simulators.
+/// The result of comparing the two simulators.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Agreement {
     /// The kind of records compared: pulses or bytes.
     pub what: &'static str,
     /// The number of records.
     pub count: usize,
-    /// Cycles by which all records of avr8js come later.
+    /// Cycles by which all records of avr8js are later.
     pub offset: i64,
     /// The largest deviation from this offset, cycles.
     pub jitter: u64,
@@ -233,12 +229,12 @@ impl fmt::Display for Agreement {
     }
 }
 
-/// Compares the servos' pulses: their pins, their order, their rising edges except for
-/// a constant, and their widths, all to the cycle. The data sheet does not say in
-/// which of its cycles an instruction reaches a peripheral, hence the constant.
+/// Compares the servos' pulses to the cycle: their pins, their order, their widths, and their rising edges except
+/// for a constant offset. The offset is allowed because the data sheet does not say in which of its cycles an
+/// instruction reaches a peripheral.
 ///
 /// # Errors
-/// Returns the first difference, in a message.
+/// Returns a message about the first difference.
 pub fn compare_pulses(
     simavr: &Account,
     avr8js: &Account,
@@ -282,10 +278,10 @@ pub fn compare_pulses(
     })
 }
 
-/// Compares the bytes of the console.
+/// Compares the bytes that the console sent.
 ///
 /// # Errors
-/// Returns the first difference, in a message.
+/// Returns a message about the first difference.
 pub fn compare_console(simavr: &Account, avr8js: &Account) -> Result<Agreement, String> {
     let (Some(first), Some(other)) = (simavr.sent.first(), avr8js.sent.first()) else {
         return Err("one of them is silent".into());
@@ -321,7 +317,7 @@ pub fn compare_console(simavr: &Account, avr8js: &Account) -> Result<Agreement, 
     })
 }
 
-/// The pulses that have ended by a cycle.
+/// Returns the pulses that have ended by a cycle.
 fn ended_pulses(pulses: &[PinPulse], limit: u64) -> Vec<PinPulse> {
     let pulses = pulses.iter().copied();
     pulses
@@ -329,7 +325,7 @@ fn ended_pulses(pulses: &[PinPulse], limit: u64) -> Vec<PinPulse> {
         .collect()
 }
 
-/// The text before byte `n`, at most a line of it.
+/// Returns the text up to byte `n`, at most about a line of it.
 fn tail(bytes: &[SerialByte], n: usize) -> String {
     let end = bytes.len().min(n + 1);
     let bytes: Vec<u8> = bytes[end.saturating_sub(60)..end]

@@ -1,11 +1,9 @@
-//! Random robots without symmetry, each one valid.
+//! Generator of random, valid robots without symmetry.
 //!
-//! In the paper's robot left equals right, head equals tail and every limit of a margin
-//! is .3, so a mistake that exchanges two of them changes nothing. Here every length,
-//! servo and limit is different. A robot is written as the text of a robot.toml and read
-//! by [`Robot::parse`], which refuses what is not valid: a robot that comes out of here
-//! is one that a builder could have. Each has a gait that moves, and every second one
-//! measures its servos' rail.
+//! In the paper's robot, left equals right, head equals tail and every limit of a margin is .3, so a mistake that
+//! exchanges two of them changes nothing. Here every length, servo and limit is different. A robot is written as
+//! the text of a robot.toml and read by [`Robot::parse`], which rejects invalid ones, so each result is a robot
+//! that a builder could have. Each has a gait that moves, and every second one measures its servos' rail.
 
 use std::fmt::Write;
 
@@ -15,7 +13,7 @@ use lizard_core::numbers::section::SPACE;
 use lizard_kinematics::{End, Leg, Limits, Links, Lizard, Side};
 use lizard_robot::Robot;
 
-/// Drafts of one robot before the search is given up.
+/// Number of drafts of a robot after which the search ends.
 const DRAFTS: usize = 1000;
 
 /// The pins that a servo may be on.
@@ -28,10 +26,10 @@ const PINS: [&str; 17] = [
 const SERVOS: [&str; 4] = ["A1", "A2", "A3", "A4"];
 const LEGS: [&str; 4] = ["LF", "RF", "RH", "LH"];
 
-/// A valid robot and the text that it was read from.
+/// Returns a random valid robot and the text that it was read from.
 ///
 /// # Panics
-/// If no draft becomes a valid robot: the generator is wrong.
+/// If no draft is a valid robot; then the generator is wrong.
 pub fn random_robot(rng: &mut Rng) -> (String, Robot) {
     (0..DRAFTS)
         .find_map(|_| {
@@ -51,9 +49,8 @@ pub fn random_robot(rng: &mut Rng) -> (String, Robot) {
         .expect("one draft in a few is a valid robot")
 }
 
-/// The same robot with as many more gaits as the board has room for, so that no room is left for
-/// the maps of certified cells. Their names have `length` characters and differ in the last two
-/// alone.
+/// Returns the same robot with as many more gaits as the board has room for, so that no room is left for the maps
+/// of certified cells. Their names have `length` characters and differ only in the last two.
 ///
 /// # Panics
 /// If the robot has no gait that moves, or is not valid.
@@ -61,7 +58,7 @@ pub fn with_many_gaits(text: &str, length: usize) -> Robot {
     let robot = Robot::parse(text).expect("a valid robot");
     let like = robot.gaits().iter().find(|gait| gait.moves());
     let like = like.expect("a gait that moves").name();
-    // With its own gains, a gait may need a waveform of its own.
+    // With its own gains, a gait may need its own waveform.
     let taken = robot.content().section().len() + size_of::<Wave>();
     let room = usize::from(SPACE).saturating_sub(taken);
     let gaits = (0..room / (size_of::<Gait>() + length)).map(|n| {
@@ -71,7 +68,7 @@ pub fn with_many_gaits(text: &str, length: usize) -> Robot {
     Robot::parse(&format!("{text}{}", gaits.collect::<String>())).expect("more of the same gait")
 }
 
-/// Everything but the gaits.
+/// All properties of a robot except its gaits.
 struct Body {
     scale: f64,
     links: [f64; 20],
@@ -85,7 +82,7 @@ struct Body {
 }
 
 impl Body {
-    /// A robot that stands; `None` where no safe neutral pose was found.
+    /// Returns a random robot that can stand; `None` if no safe neutral pose was found.
     fn random(rng: &mut Rng) -> Option<Self> {
         let scale = 0.3 * (4.0f64 / 0.3).powf(rng.f64());
         let mut length = |min: f64, max: f64| round(scale * random_between(rng, min, max));
@@ -126,7 +123,7 @@ impl Body {
             let first = random_between(rng, 0.35, 0.65);
             links[halves[0]] = round(nominal * first);
             links[halves[1]] = round(nominal * (1.0 - first));
-            // A slider keeps a length.
+            // Limits the stroke, so that a slider keeps a positive length.
             limits.stroke_min = limits.stroke_min.max(-round(0.8 * nominal));
         }
         lizard.links = Links::from(links);
@@ -160,7 +157,7 @@ impl Body {
         })
     }
 
-    /// The text of a robot that only stands.
+    /// Returns the text of a robot whose only gait is `stand`.
     fn text(&self) -> String {
         let mut text = String::from("[links]\n");
         let Lizard { leg, .. } = self.lizard;
@@ -207,7 +204,7 @@ impl Body {
     }
 }
 
-/// A safe neutral pose with some room around it, deg; `None` if there is none near.
+/// Returns a safe neutral pose with some room around it, deg; `None` if none was found.
 fn neutral(rng: &mut Rng, lizard: &Lizard, limits: &Limits) -> Option<[f64; 4]> {
     /// Distance of every margin from its limit.
     const ROOM: f64 = 0.12;
@@ -227,12 +224,12 @@ fn neutral(rng: &mut Rng, lizard: &Lizard, limits: &Limits) -> Option<[f64; 4]> 
     })
 }
 
-/// A rail on an analogue pin without a servo, with random thresholds.
+/// Returns the text of a rail on an analogue pin without a servo, with random thresholds.
 fn rail(rng: &mut Rng, pins: &[&'static str]) -> String {
     let free = pins[4..].iter().find(|pin| pin.starts_with('A'));
     let pin = free.expect("six analogue pins and four servos");
     let ratio = round(random_between(rng, 1.5, 3.0));
-    // The pin allows 5 V.
+    // The highest voltage at the pin is 5 V.
     let slow = round(ratio * random_between(rng, 2.4, 4.0));
     let stop = round(slow - random_between(rng, 0.15, 0.4));
     let rest = round(stop - random_between(rng, 0.15, 0.4));
@@ -246,7 +243,7 @@ fn rail(rng: &mut Rng, pins: &[&'static str]) -> String {
 /// A function that returns a gait's text for a size from 0 to 1; some gaits ignore the size.
 type Sized = Box<dyn Fn(f64) -> String>;
 
-/// Gaits of every kind.
+/// Returns gaits of every kind.
 fn gaits(rng: &mut Rng, body: &Body) -> Vec<Sized> {
     let mut gaits = Vec::new();
     let period = |rng: &mut Rng| round(random_between(rng, 0.7, 3.0));
@@ -293,7 +290,7 @@ fn gaits(rng: &mut Rng, body: &Body) -> Vec<Sized> {
             legs([size, 1.0, 0.5 * size, -0.5 * size].map(round_factor))
         )
     }));
-    // Around where the end point stands in the neutral pose.
+    // The paths are around the end point's position in the neutral pose.
     let Ok(solution) = body.lizard.solve(&body.neutral.into()) else {
         return gaits;
     };
@@ -315,8 +312,8 @@ fn gaits(rng: &mut Rng, body: &Body) -> Vec<Sized> {
     gaits
 }
 
-/// The text of a robot with one more gait, as large as the robot allows; without
-/// the gait if even a small one is refused.
+/// Returns the text of a robot with one more gait, as large as the robot allows, or without the gait if even a
+/// small one is rejected.
 fn with_allowed_gait(text: String, gait: &Sized) -> String {
     [1.0, 0.6, 0.35, 0.2, 0.1, 0.05]
         .into_iter()

@@ -1,8 +1,8 @@
-//! Two million random bytes, two million lines that are nearly right and two thousand
-//! memories, through the core on this machine: each line has one answer, no pulse
-//! is outside the limits, and the memory is always valid.
+//! Robustness test of the core on this machine: two million random bytes, two million lines that are nearly valid
+//! and two thousand EEPROM contents. Each line has one answer, no pulse is outside the limits, and the memory is
+//! always valid.
 //!
-//! `LIZARD_FUZZ=3`, as continuous integration has it, takes three times as many.
+//! With `LIZARD_FUZZ=3`, as in continuous integration, it takes three times as many.
 
 use std::thread;
 
@@ -15,13 +15,13 @@ use lizard_host_tests::{robot, times};
 #[path = "firmware/lines.rs"]
 mod lines;
 
-/// The number of bytes and of lines, and a thousand times the number of memories.
+/// The number of bytes and of lines, and a thousand times the number of EEPROM contents.
 const COUNT: u64 = 2_000_000;
 
-/// Number of parts that run in parallel.
+/// Number of threads on which a test runs.
 const PARTS: u64 = 2;
 
-/// Runs the parts of a test in parallel.
+/// Runs a test on several threads, each with its own random numbers and its share of the count.
 fn in_parts(part: impl Fn(&mut Rng, u64) + Sync) {
     thread::scope(|scope| {
         let run = |n| {
@@ -40,7 +40,7 @@ fn millions_of_random_bytes_do_no_harm_to_the_core() {
     in_parts(|rng, count| {
         let mut board = Board::new(robot(), Eeprom::blank());
         for n in 0..count {
-            // Line ends more often than random bytes have them.
+            // Line ends are more frequent than in random bytes.
             let byte = if rng.u8(..32) == 0 { b'\n' } else { rng.u8(..) };
             board.take(byte);
             if n % 64 == 0 {
@@ -84,7 +84,7 @@ fn millions_of_lines_that_are_nearly_right_do_no_harm_to_the_core() {
 fn thousands_of_memories_do_no_harm_to_the_core() {
     in_parts(|rng, count| {
         for _ in 0..count / 1_000 {
-            // From one changed byte to all of them.
+            // Changes one byte, three, or about as many as there are.
             let changed = [1, 3, 3 * CONTENT][rng.usize(..3)];
             let mut data = [0; 3 * CONTENT + 12];
             for _ in 0..changed {

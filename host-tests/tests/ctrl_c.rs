@@ -1,5 +1,4 @@
-//! Tests of the shell in which the flash tests run: it takes input, shows output, and ends on
-//! Ctrl-C.
+//! Tests of the shell in which the flash tests run: it takes input, shows output, and ends at Ctrl-C.
 
 mod shell;
 
@@ -20,7 +19,7 @@ fn ctrl_c_ends_a_command_that_reads_and_prints() {
 
 #[test]
 fn ctrl_c_ends_a_command_even_if_the_tests_ignore_it() {
-    // Like a program that a shell without job control starts with `&`.
+    // The same as in a program that a shell without job control starts with `&`.
     let this = std::env::current_exe().expect("it runs");
     let mut again = Command::new("env");
     again.args(["--ignore-signal=INT"]).arg(this);

@@ -1,4 +1,4 @@
-//! The pages of docs/ name only tests, items, links and files that exist.
+//! Consistency of the documentation: its pages name only tests, items, links and files that exist.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -39,8 +39,8 @@ fn every_fault_in_the_documentation_names_an_existing_test() {
     assert!(count > 20, "{count}");
 }
 
-/// The rows `| offset | bytes | field |` of a type, in the order in which they are
-/// written here. The pattern names every field, so none can be forgotten.
+/// Makes the rows `| offset | bytes | field |` of a type, in the order of the fields given. The pattern names every
+/// field, so none can be forgotten.
 macro_rules! rows {
     ($type:ident, $start:expr, [$($field:ident),+ $(,)?]) => {{
         let _ = |$type { $($field: _),+ }: &$type| ();
@@ -112,7 +112,7 @@ fn the_page_of_the_firmware_has_every_field_of_a_robots_section_at_its_place() {
     );
 }
 
-/// The names of crates and items in a text.
+/// Returns the names of crates and items in a text.
 fn identifiers(text: &str) -> BTreeSet<&str> {
     let apart = |c: char| !(c.is_alphanumeric() || "_-/".contains(c));
     text.split(apart).collect()
@@ -172,7 +172,7 @@ fn every_item_of_the_code_that_a_page_names_by_its_path_exists() {
     assert!(count > 0, "no page names an item");
 }
 
-/// All Rust files of a folder and of those within it.
+/// Returns the text of all Rust files in a folder and its subfolders.
 fn sources(folder: &Path) -> String {
     let entries = fs::read_dir(folder).expect("a folder of sources");
     let paths = entries.map(|entry| entry.expect("an entry").path());
@@ -184,7 +184,7 @@ fn sources(folder: &Path) -> String {
         .collect()
 }
 
-/// The files of a folder, or the one file, that have a word by itself.
+/// Returns the files of a folder, or the file itself, that contain a word by itself.
 fn files_with_word(path: &Path, word: &str) -> BTreeSet<PathBuf> {
     if path.is_dir() {
         let entries = fs::read_dir(path).expect("a folder");
@@ -200,8 +200,8 @@ fn files_with_word(path: &Path, word: &str) -> BTreeSet<PathBuf> {
     knows.then(|| path.to_path_buf()).into_iter().collect()
 }
 
-/// `center` serves as the example, since the word means nothing else; `deadman` is also in
-/// sentences.
+/// Compares the list of files in CONTRIBUTING.md with those that contain `center`. This command is the example,
+/// since the word has no other meaning; `deadman` also occurs in sentences.
 #[test]
 fn a_console_command_has_at_most_seven_files_and_the_docs_name_them() {
     let page = fs::read_to_string(root().join("CONTRIBUTING.md")).expect("CONTRIBUTING.md");
@@ -230,7 +230,7 @@ fn a_console_command_has_at_most_seven_files_and_the_docs_name_them() {
     assert!(listed.len() <= 7, "{listed:?}");
 }
 
-/// README, CONTRIBUTING and the pages of docs/, with their texts.
+/// Returns README, CONTRIBUTING and the pages of docs/, with their texts.
 fn pages() -> Vec<(PathBuf, String)> {
     let mut paths = vec![root().join("README.md"), root().join("CONTRIBUTING.md")];
     let docs = fs::read_dir(root().join("docs")).expect("docs/");
@@ -243,7 +243,7 @@ fn pages() -> Vec<(PathBuf, String)> {
     paths.into_iter().map(text).collect()
 }
 
-/// The links and pictures of a page: the text between `](` and `)`, or in `src="..."`.
+/// Returns the links and pictures of a page: the text between `](` and `)`, or in `src="..."`.
 fn links(text: &str) -> Vec<&str> {
     let between = |start: &'static str, end: char| {
         let behind = text.split(start).skip(1);
@@ -252,7 +252,7 @@ fn links(text: &str) -> Vec<&str> {
     between("](", ')').chain(between("src=\"", '"')).collect()
 }
 
-/// The anchors of a page's headings, as GitHub and mkdocs make them.
+/// Returns the anchors of a page's headings, as GitHub and mkdocs make them.
 fn anchors(text: &str) -> Vec<String> {
     let anchor = |line: &str| {
         let title = line.trim_start_matches('#').trim().to_lowercase();
@@ -321,7 +321,7 @@ fn no_picture_is_on_two_pages_of_the_book() {
     let mut seen = BTreeSet::new();
     for (page, text) in pages() {
         let folder = page.parent().expect("a folder");
-        // README is the book's cover and not a page of it.
+        // README is the book's cover and no page of it.
         if !folder.ends_with("docs") {
             continue;
         }

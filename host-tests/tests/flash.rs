@@ -14,14 +14,14 @@ use lizard_time_limit::LIMIT;
 use shell::Shell;
 use simulated_uno::{Fidelity, Uno};
 
-/// Time after which all servos are awake.
+/// Frames until all servos are awake.
 const AWAKE_FRAMES: u64 = 60;
 
 fn make_flash(desk: &Desk) -> Shell {
     Shell::start("make", &["flash"], &[("RAVEDUDE_PORT", &desk.name())])
 }
 
-/// Lets a number of frames pass.
+/// Runs the board for a number of frames.
 fn run_frames(desk: &mut Desk, count: u64) {
     let end = desk.uno.cycle() + count * FRAME;
     let passed = desk.until(|uno| uno.cycle() > end);
@@ -82,7 +82,7 @@ fn an_upload_keeps_the_eeprom() {
     let kept: [u8; 1024] = std::array::from_fn(|at| (at * 7 + at / 256) as u8);
     desk.uno.set_eeprom(&kept);
     let mut shell = make_flash(&desk);
-    // Before the firmware may write a byte of its own.
+    // Checked before the firmware can write a byte of its own.
     desk.see(&shell, "bytes of flash verified");
     assert!(
         desk.uno.eeprom() == kept,

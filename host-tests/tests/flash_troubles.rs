@@ -10,8 +10,8 @@ use lizard_time_limit::LIMIT;
 use simulated_uno::Port;
 use tempfile::TempDir;
 
-/// Runs `scripts/flash --check` on the serial ports of a folder. Returns its output, and
-/// true if it goes on. `port` is the value of RAVEDUDE_PORT.
+/// Runs `scripts/flash --check` on the serial ports of a folder. Returns its error output, and
+/// true if it succeeds. `port` is the value of RAVEDUDE_PORT.
 fn check_as(user: &[&str], ports: &Path, port: Option<&Path>) -> (String, bool) {
     let scripts = scripts();
     let script = scripts.path().join("scripts/flash");
@@ -44,7 +44,7 @@ fn folder() -> TempDir {
     folder
 }
 
-/// The scripts where another user can read them, too.
+/// A copy of the scripts that other users can read, too.
 fn scripts() -> TempDir {
     let copy = folder();
     let mut command = Command::new("cp");
@@ -125,8 +125,8 @@ fn without_permission_the_message_says_which_group_to_join() {
     fs::set_permissions(&port, Permissions::from_mode(0o660)).expect("it is ours");
     let as_nobody = ["setpriv", "--reuid=nobody", "--clear-groups"];
     if !is_root() {
-        // Only root can run it as another user; a port that even its owner may not open
-        // does as well.
+        // Only root can run the script as another user. A port that even its owner may not
+        // open has the same effect.
         fs::set_permissions(&port, Permissions::from_mode(0o000)).expect("it is ours");
         let (printed, goes_on) = check_as(&[], ports.path(), None);
         assert!(!goes_on);

@@ -10,7 +10,7 @@ use lizard_host_tests::judge::{
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin, SerialByte};
 
-/// A robot that stands, on the simulated UNO, everything recorded since power-on.
+/// A standing robot on the simulated UNO, with everything recorded since power-on.
 fn awake() -> FirmwareBench {
     let mut bench = FirmwareBench::power_on(Fidelity::DataSheet);
     bench.run_ms(1000);
@@ -29,17 +29,17 @@ enum Apart {
     /// Two cycles: two interrupts may delay main before a byte, and each may come one
     /// cycle later in one simulator than in the other.
     Cycles,
-    /// Less than a turn of main, which notices only once in a turn that the EEPROM is
-    /// ready or that a byte of a flood is there.
+    /// Less than an iteration of main's loop, which notices only once per iteration that the EEPROM
+    /// is ready or that a byte of a flood has arrived.
     Turn,
     /// Any: the times are not compared. The bytes of a flood that are lost while long
     /// answers are sent depend on single cycles, in which two simulators may differ.
     Any,
 }
 
-/// Cycles of the longest turn of main: it computes a frame, 12 000 at the worst, and writes a
-/// piece of a line. If the EEPROM becomes ready just before a turn in one simulator, it may do
-/// so just after its beginning in the other, and then waits for the next turn.
+/// Cycles of the longest iteration of main's loop: it computes a frame, at most 12 000 cycles, and
+/// writes a piece of a line. If the EEPROM becomes ready just before an iteration in one simulator,
+/// it may do so just after its start in the other, which then notices it in the next iteration.
 const TURN: u64 = 20_000;
 
 /// Runs avr8js on the bytes that the bench has received, and compares pulses, console and EEPROM.
@@ -121,7 +121,7 @@ fn two_simulators_agree_about_saved_settings() {
 fn two_simulators_agree_under_a_saturated_line() {
     let moving = gaits().iter().find(|line| *line != "stand").cloned();
     let moving = moving.unwrap_or_else(|| "stand".into());
-    // No command that moves: of a flood of those, each simulator would obey others.
+    // No command that moves: bytes of a flood are lost, and each simulator would obey other commands.
     let floods = [
         ("status\n", Apart::Any),
         ("help\n", Apart::Any),

@@ -4,7 +4,7 @@ use lizard_host_tests::avr_gcc::{link, object_of_c};
 use lizard_linker::{ROUTINES, Savings, shrink};
 use simulated_uno::{Fidelity, Image, Uno};
 
-/// A program linked by avr-gcc and by our linker, and the savings.
+/// Links a program unchanged, and after our linker has shrunk it. Returns the savings of each, too.
 fn link_both_ways(program: &str) -> [(Image, Savings); 2] {
     let object = object_of_c(program).expect("it compiles");
     let (short, savings) = shrink(&object)
@@ -31,8 +31,8 @@ fn run(image: &Image) -> Uno {
     uno
 }
 
-/// Functions of 600 bytes, each of which calls the one that is ten farther, while a timer
-/// interrupts them.
+/// A C program of functions of 600 bytes, each of which calls the one ten places further on, while a
+/// timer interrupts them.
 fn far_calls(more: &str) -> String {
     let functions: String = (0..20)
         .rev()
@@ -94,8 +94,8 @@ fn functions_in_another_order_compute_the_same_in_fewer_bytes() {
     let [(plain, _), (short, savings)] = link_both_ways(&far_calls(""));
     assert_eq!(result(&plain), far_sum());
     assert_eq!(result(&short), far_sum());
-    // Main cannot be near all ten functions that it calls, but those can be near the
-    // ones that they call.
+    // Main cannot be near all ten functions that it calls, but each of these can be near the
+    // one that it calls.
     assert!(savings.calls >= 20, "{savings:?}");
     let end = |image: &Image| image.symbol("_etext").expect("it has one").address;
     let saved = end(&plain) as i64 - end(&short) as i64;

@@ -1,4 +1,4 @@
-//! Modules do not use each other in circles, and rooms use only rooms below them.
+//! Modules have no circular dependencies, and rooms of the core use only rooms below them.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -28,7 +28,7 @@ const CRATES: [&str; 18] = [
     "web/wasm-parts",
 ];
 
-/// The rooms of the core, the top one first. A room may use those below it.
+/// The rooms of the core, its top-level modules, the top one first. A room may use those below it.
 const ROOMS: [&str; 6] = ["console", "control", "motion", "guard", "memory", "numbers"];
 
 /// Folders whose `mod.rs` counts as a module of its own, which must not be part of a circle
@@ -104,8 +104,8 @@ fn a_use_of_a_module_above_is_read_as_its_path_and_a_roots_own_items_are_found()
     assert_eq!(items(root).collect::<Vec<_>>(), ["run", "KNOWN"]);
 }
 
-/// The modules that use each other in circles: those that are left after removing,
-/// again and again, each module that uses no other or that no other uses.
+/// The modules that use each other in circles: those that remain after repeatedly removing every
+/// module that uses no other or that no other uses.
 fn in_circles(mut uses: Uses) -> Vec<String> {
     loop {
         let before = uses.len();
@@ -158,8 +158,8 @@ impl Folder {
         self.root.lines().filter_map(module).collect()
     }
 
-    /// The uses among its modules, including its `mod.rs` if `with_root`. A module and its
-    /// submodules count as one; tests do not count.
+    /// Returns the uses among the folder's modules, including its `mod.rs` if `with_root`. A module
+    /// and its submodules count as one; tests do not count.
     fn uses(&self, with_root: bool) -> Uses {
         let modules = self.modules();
         // `crate::Name` uses the module from which the folder's root file exports the name.
@@ -226,7 +226,7 @@ fn items(text: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// The text of a file with every `super::` as the path of the module above it.
+/// Replaces every `super::` in the text of a file by the path of the module above it.
 fn resolve_super(text: &str, above: &str) -> String {
     let mut text = text.to_owned();
     let parts: Vec<&str> = above.split_inclusive("::").collect();
@@ -247,7 +247,7 @@ fn module(line: &str) -> Option<&str> {
     line.strip_prefix("mod ")?.strip_suffix(';')
 }
 
-/// The names after each `crate::`, or another path, in a text: one, or those in braces.
+/// The names that follow each occurrence of a path such as `crate::`: a single one, or those in braces.
 fn names_after<'a>(text: &'a str, path: &str) -> BTreeSet<&'a str> {
     let after = text.split(path).skip(1);
     after
@@ -263,8 +263,8 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(apart).filter(|word| !word.is_empty())
 }
 
-/// A file without its comments and without what is compiled for tests alone; nothing
-/// where there is no such file.
+/// Reads a file without its comments and without the code that is compiled only for tests. A missing
+/// file is empty.
 fn read(path: &Path) -> String {
     let text = fs::read_to_string(path).unwrap_or_default();
     let text = match text.split_once("#[cfg(test)]\nmod tests {") {

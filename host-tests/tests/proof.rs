@@ -1,5 +1,5 @@
-//! The guard of every robot of this repository against floating point and against the
-//! robot's maps of cells, at one in 256 of all pairs of servo positions. `make prove` looks at all of them.
+//! The guard of every robot of this repository against floating point and against the robot's maps
+//! of cells, at one in 256 of all pairs of servo positions. `make prove` checks all pairs.
 
 use std::path::PathBuf;
 
@@ -9,7 +9,7 @@ use lizard_robot::Robot;
 
 const ONE_IN: u32 = 256;
 
-/// robot.toml, or the robot that the firmware was built for, and all of robots/.
+/// robot.toml, or the robot that the firmware was built for, and every file of robots/.
 fn files() -> Vec<PathBuf> {
     let root = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
     let own = std::env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
@@ -27,7 +27,7 @@ fn files() -> Vec<PathBuf> {
 #[test]
 fn no_pair_of_positions_outside_the_band_or_in_a_cell_is_decided_wrong() {
     for (number, file) in (0..).zip(files()) {
-        // Another share of the pairs for each robot, and for each seed.
+        // A different share of the pairs for each robot and each seed.
         let share = PairSample {
             one_in: ONE_IN,
             offset: (seed().wrapping_add(number) % u64::from(ONE_IN)) as u32,

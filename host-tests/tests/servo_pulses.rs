@@ -1,5 +1,5 @@
-//! `servo-pulses` without the lizard: its example, eight servos beside a flood of serial
-//! bytes, measured in the simulated UNO.
+//! The crate `servo-pulses` without the lizard: its example moves eight servos during a flood of
+//! serial bytes, measured in the simulated UNO.
 
 use lizard_host_tests::{FirmwareBench, root};
 use servo_pulses::{MIN_WIDTH, frame_cycles, max_width};
@@ -8,10 +8,10 @@ use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin, State, Uno, most_pins_high};
 /// The example's pins, in its order.
 const PINS: [u8; 8] = [2, 3, 7, 8, 9, 12, 14, 19];
 
-/// Width of a servo's pulse in a frame, cycles, by the description of the example: up from 1000 us
-/// by a step of its own in every frame, to 2000 us and down again.
+/// Width of a servo's pulse in a frame, cycles, as the example describes it: in every frame it rises by
+/// the servo's own step from 1000 us to 2000 us, and falls again in the same way.
 fn width(servo: u64, frame: u64) -> u64 {
-    // It counts its position in 16 bits.
+    // The example counts the position in 16 bits.
     let position = frame * (16 * servo + 5) % 65_536 % 32_000;
     32_000 - 16_000u64.abs_diff(position)
 }
@@ -51,7 +51,7 @@ fn eight_servos_are_exact_to_the_cycle_beside_a_flood_of_echoed_bytes() {
                 assert_eq!(pulse.width, expected, "{fidelity:?}, pin {pin}, frame {n}");
             }
             for pair in pulses.windows(2) {
-                // Also the first edges are a frame apart, to the cycle of the wait.
+                // The first edges, too, are a frame apart, to the cycle.
                 assert_eq!(
                     pair[1].start - pair[0].start,
                     frame,
@@ -61,7 +61,7 @@ fn eight_servos_are_exact_to_the_cycle_beside_a_flood_of_echoed_bytes() {
         }
         let echo: Vec<u8> = uno.transmitted().iter().map(|byte| byte.byte).collect();
         // The line was full in both directions. Stock simavr sends more slowly than it
-        // receives, so that only here nothing is lost.
+        // receives, so only the simulation by the data sheet loses nothing.
         if fidelity == Fidelity::DataSheet {
             assert!(echo.len() > 115_000, "{} bytes", echo.len());
             let sent: Vec<u8> = text.iter().cycle().take(echo.len()).copied().collect();

@@ -19,7 +19,7 @@ fn refusal(image: &Image) -> StackError {
     StackDepth::of(image).expect_err("it must be refused")
 }
 
-/// The depth of the stack in a hundredth of a second.
+/// The depth that the stack reaches in a hundredth of a second.
 fn measure_depth(image: &Image) -> u16 {
     let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
     uno.run_ms(10);
@@ -48,7 +48,7 @@ fn pushes_calls_and_returns_are_added_up_along_the_deepest_way() {
     ));
     assert_eq!(depth(&image).worst(), 2 + 3 + 2 + 1);
     assert_eq!(measure_depth(&image), 8);
-    // Nothing static, so all of SRAM but these is left.
+    // There is no static data, so all of SRAM except these bytes is left.
     assert_eq!(depth(&image).margin(), 2048 - 8);
 }
 

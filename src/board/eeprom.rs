@@ -1,4 +1,4 @@
-//! The EEPROM: 1024 bytes that outlast power.
+//! The EEPROM: 1024 bytes that survive a loss of power.
 //!
 //! The chip erases and writes a byte by itself, in 3.4 ms, while the program continues. A
 //! write must begin within four cycles after it is enabled (data sheet, section 8.6.3),
@@ -21,12 +21,12 @@ pub struct Eeprom {
 }
 
 impl Eeprom {
-    /// Waits for a write that a reset has left under way, 3.4 ms at most: until then
-    /// nothing can be read.
+    /// Waits until a write that a reset has left in progress has ended, at most 3.4 ms: nothing can
+    /// be read before.
     pub fn new(registers: EEPROM) -> Self {
         while registers.eecr.read().eepe().bit_is_set() {}
-        // Erase and write in one operation, and no interrupt; the boot loader may
-        // have left something else.
+        // Erase and write in one operation, without an interrupt; the boot loader may have
+        // left another mode.
         registers.eecr.reset();
         Self { registers }
     }

@@ -50,15 +50,15 @@ pub struct Uno {
 
 impl Uno {
     /// Starts the serial port, the LED, the clock and, once widths are submitted,
-    /// the pulses; then lets interrupts in. To be called once, first thing in main.
+    /// the pulses; then enables interrupts. To be called once, at the start of main.
     ///
     /// The first tick comes 4 ms later. All servo pins are low until the first
     /// [`Board::submit`].
     pub fn start() -> Self {
-        // SAFETY: nothing has run before this but the boot loader; each peripheral
+        // SAFETY: nothing has run before this except the boot loader; each peripheral
         // goes to the one module that owns it.
         let board = unsafe { Peripherals::steal() };
-        // Which of them are the servos' is known later; none of them stays high until then.
+        // The servos' pins are not known yet, so no pin may stay high.
         // SAFETY: any value of a port is sound; D0 and D1, the serial line, keep theirs.
         unsafe {
             board.PORTB.portb.write(|w| w.bits(0));

@@ -16,25 +16,25 @@ use ufmt::uWrite;
 
 use servo_pulses::cells::{Byte, Counter};
 
-/// Room for a complete line: main may be busy for 64 bytes, 89 000 cycles, seven times the
-/// limit of a frame.
+/// Size of the receive ring, a complete line: main may be busy for 64 bytes, 89 000 cycles, seven
+/// times the limit of a frame.
 const RECEIVE: usize = 64;
 
-/// The longest line of the console fits, and numbers modulo 256 are the cheapest.
+/// Size of the send ring: the longest line of the console fits, and arithmetic modulo 256 is the cheapest.
 const SEND: usize = 256;
 
-/// Bytes that the empty ring takes for sending.
+/// Bytes that the send ring takes when it is empty.
 pub const ROOM: u8 = Ring::<SEND>::CAPACITY;
 
-/// The value of UBRR0 for the rate that is nearest: 16 MHz / 8 / (16 + 1) = 117 647 baud,
+/// The value of UBRR0 for the nearest possible rate: 16 MHz / 8 / (16 + 1) = 117 647 baud,
 /// 2.1 % fast, which the boot loader uses too; 57 143, 0.8 % slow; 38 462 and 9615, 0.2 % fast.
 const fn divisor(rate: Rate) -> u16 {
     let (clock_by_8, baud) = (16_000_000 / 8, rate.baud());
     ((clock_by_8 + baud / 2) / baud - 1) as u16
 }
 
-/// Bytes on their way. `head` is moved by the side that puts, `tail` by the one
-/// that takes; both run freely modulo 256.
+/// A ring of bytes between main and a handler. The side that puts bytes moves `head`, the side that
+/// takes them `tail`; both count freely modulo 256.
 struct Ring<const N: usize> {
     bytes: [Byte; N],
     head: Byte,
@@ -58,7 +58,7 @@ impl<const N: usize> Ring<N> {
         }
     }
 
-    /// The number of bytes that fit in.
+    /// The number of bytes that there is room for.
     fn room(&self) -> u8 {
         Self::CAPACITY - self.head.get().wrapping_sub(self.tail.get())
     }
@@ -71,7 +71,7 @@ impl<const N: usize> Ring<N> {
     fn put(&self, byte: u8) {
         let head = self.head.get();
         self.bytes[usize::from(head & Self::MASK)].set(byte);
-        // The byte before the head: the other side looks at the head first.
+        // The byte is stored before the head moves, because the other side looks at the head first.
         self.head.set(head.wrapping_add(1));
     }
 
@@ -81,7 +81,7 @@ impl<const N: usize> Ring<N> {
         }
         let tail = self.tail.get();
         let byte = self.bytes[usize::from(tail & Self::MASK)].get();
-        // The byte before the tail: its slot is free once the tail has moved.
+        // The byte is read before the tail moves, because that frees its slot.
         self.tail.set(tail.wrapping_add(1));
         Some(byte)
     }
@@ -91,7 +91,7 @@ static RECEIVED: Ring<RECEIVE> = Ring::new();
 static TO_SEND: Ring<SEND> = Ring::new();
 static LOST: Counter = Counter::new();
 
-/// Sets up the port. With interrupts off, once.
+/// Sets up the port. To be called once, with interrupts off.
 pub fn start(usart: USART0, rate: Rate) {
     // Double speed before the divisor: stock simavr takes the baud rate at the
     // moment the divisor is written.
@@ -110,7 +110,7 @@ pub fn start(usart: USART0, rate: Rate) {
     enable_interrupts(&usart, false);
 }
 
-/// Changes the rate. Bytes on their way in either direction come garbled.
+/// Changes the rate. Bytes that are on the line in either direction arrive garbled.
 pub fn set_rate(rate: Rate) {
     let divisor = match rate {
         Rate::Fastest => const { divisor(Rate::Fastest) },
@@ -123,7 +123,7 @@ pub fn set_rate(rate: Rate) {
     usart.ubrr0.write(|w| w.bits(divisor));
 }
 
-/// The next byte received, if any; [`GARBLED`] in place of one without its stop bit.
+/// Returns the next byte received, if any; [`GARBLED`] in place of a byte without its stop bit.
 pub fn read() -> Option<u8> {
     RECEIVED.take()
 }
@@ -138,19 +138,19 @@ pub fn is_sending() -> bool {
     !TO_SEND.is_empty()
 }
 
-/// Bytes that [`Writer`] takes at this moment without waiting, at most 255.
+/// The number of bytes that [`Writer`] takes now without waiting, at most 255.
 pub fn room() -> u8 {
     TO_SEND.room()
 }
 
-/// Bytes received and lost, because main left them in a full ring or because an
-/// overrun in the receiver dropped at least one, or received garbled. Stays at 65535.
+/// The number of received bytes that were garbled, or lost because the ring was full or the receiver
+/// overran. An overrun counts once, even if it lost more than one byte. Stays at 65535.
 pub fn lost() -> u16 {
     LOST.read()
 }
 
-/// Sends text. Main checks [`room`] before it writes; a byte without room waits
-/// until the line has taken another, 1389 cycles at most.
+/// A writer of text to the serial line. Main checks [`room`] before it writes; a byte without room
+/// waits until the line has taken another, 1389 cycles at most.
 pub struct Writer;
 
 impl uWrite for Writer {
@@ -174,15 +174,15 @@ impl uWrite for Writer {
 fn send(byte: u8) {
     while room() == 0 {}
     TO_SEND.put(byte);
-    // SAFETY: main writes UCSR0B, whole, to a value that is right whenever there is
-    // something to send, as there was a moment ago; if the handler has sent it
-    // meanwhile, it runs once more for nothing.
+    // SAFETY: main writes all of UCSR0B, to a value that is right whenever there is
+    // something to send, as there was a moment ago. If the handler has sent the byte
+    // meanwhile, it runs once more without effect.
     enable_interrupts(unsafe { &*USART0::ptr() }, true);
 }
 
-/// Receiver, transmitter and the receive interrupt on; the transmit interrupt on
-/// while there is something to send. One store, never a read and a write, so that
-/// main and a handler cannot undo each other's.
+/// Switches on the receiver, the transmitter and the receive interrupt, and the transmit
+/// interrupt if there is something to send. One store, never a read and a write, so that
+/// main and a handler cannot undo each other's change.
 #[inline(always)]
 fn enable_interrupts(usart: &RegisterBlock, has_output: bool) {
     usart.ucsr0b.write(|w| {
@@ -197,7 +197,7 @@ fn enable_interrupts(usart: &RegisterBlock, has_output: bool) {
     });
 }
 
-// A byte has come.
+// A byte has been received.
 #[avr_device::interrupt(atmega328p)]
 fn USART_RX() {
     // SAFETY: the handler reads UCSR0A and UDR0, which main never touches.
@@ -219,7 +219,7 @@ fn USART_RX() {
     }
 }
 
-// The transmitter wants a byte.
+// The transmitter is ready for a byte.
 #[avr_device::interrupt(atmega328p)]
 fn USART_UDRE() {
     // SAFETY: UDR0 is written here alone; for UCSR0B see `Writer`.

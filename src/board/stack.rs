@@ -8,11 +8,11 @@ use core::arch::global_asm;
 
 use servo_pulses::cells::Byte;
 
-/// A pattern that is hardly ever pushed by accident.
+/// A pattern that the stack rarely contains by accident.
 const GUARD: [u8; 4] = [0xde, 0x5a, 0xc3, 0x17];
 
-// The last of the data: the section comes after all others. The start-up code does
-// not clear it, and the image holds nothing for it.
+// The end of the data: this section comes after all others. The start-up code does
+// not clear it, and the image has no bytes for it.
 global_asm!(
     ".pushsection .noinit.zz_guard,\"aw\",@nobits",
     ".global lizard_stack_guard",

@@ -18,7 +18,7 @@ const REFERENCE: u8 = 0x0e;
 /// The Arduino number of the first analogue pin, A0.
 const A0: u8 = 14;
 
-/// On, and 16 MHz / 128 = 125 kHz: ten bits want 50 to 200.
+/// The value of ADCSRA: on, at 16 MHz / 128 = 125 kHz, since ten bits need 50 to 200 kHz.
 const ON: u8 = 0x87;
 const START: u8 = 0x40;
 
@@ -26,7 +26,7 @@ const START: u8 = 0x40;
 pub struct Converter {
     registers: ADC,
     reading: Reading,
-    /// The channel of the servos' rail, where it is measured.
+    /// The channel of the servos' rail, if it is measured.
     channel: Option<u8>,
     /// True while the rail is being measured, false while the reference is.
     is_measuring_rail: bool,
@@ -51,17 +51,17 @@ impl Converter {
         }
     }
 
-    /// From now on the rail is measured at this pin, by its Arduino number.
+    /// Measures the rail at this pin, by its Arduino number, from now on.
     pub fn connect(&mut self, pin: Option<u8>) {
         self.channel = pin.map(|pin| pin.wrapping_sub(A0) & 7);
     }
 
-    /// The last complete reading, or nothing; begins the next part of a measurement. To be
-    /// called once a frame.
+    /// Returns the last complete reading, or an empty one, and begins the next part of a
+    /// measurement. To be called once a frame.
     pub fn next(&mut self) -> Reading {
         if self.is_selected {
             self.is_selected = false;
-            // SAFETY: as above; and it begins to convert.
+            // SAFETY: as above; this value also starts a conversion.
             self.registers
                 .adcsra
                 .write(|w| unsafe { w.bits(ON | START) });

@@ -5,17 +5,17 @@
 //! interrupt marks in RAM that the program hung, lets no further pulse begin, and
 //! never returns: a program that has hung is not trusted again, even if it could
 //! continue. Meanwhile the pulses' own interrupts run, so the reset does not cut a pulse
-//! short, and the next program knows why it began.
+//! short, and the restarted program knows the cause.
 //!
-//! It is fed only when the pulses have taken over the frame before: then main, the clock
+//! It is fed only when the pulses have taken over the previous frame: then main, the clock
 //! that woke it and both handlers of the pulses are alive.
 
 use core::arch::asm;
 
 use super::{kept, pulses};
 
-/// WDTCSR, and its values: the four cycles in which it may be changed; interrupt
-/// first and reset then, after 125 ms each.
+/// WDTCSR and its values: CHANGE permits a change within four cycles; GUARD selects an
+/// interrupt after 125 ms and a reset after 125 ms more.
 const WDTCSR: u8 = 0x60;
 const CHANGE: u8 = 0x18;
 const GUARD: u8 = 0x4b;

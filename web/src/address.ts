@@ -1,4 +1,5 @@
-// The page's address holds a room and a robot, after the # where no server sees them: a link is a robot, and so is a bookmark.
+// The page's address holds a room and a robot, after the #, where no server sees them. So a link or a bookmark keeps
+// a robot.
 import { pack } from './link-text';
 import type { Session } from './session';
 

@@ -53,7 +53,7 @@ impl<T: ?Sized> Flash<'_, T> {
     }
 }
 
-/// A table made at run time, which only a host does.
+/// Wraps a table made at run time. Only a host does this.
 #[cfg(not(target_arch = "avr"))]
 impl<'a, T: ?Sized> From<&'a T> for Flash<'a, T> {
     fn from(value: &'a T) -> Self {
@@ -152,7 +152,7 @@ impl<'a, T> Flash<'a, [T]> {
         lifetime: PhantomData,
     };
 
-    /// `length` elements from `start` on, if there are that many.
+    /// The `length` elements from `start` on; `None` if there are fewer.
     #[inline]
     pub const fn part(self, start: usize, length: usize) -> Option<Flash<'a, [T]>> {
         if start > self.len() || length > self.len() - start {
@@ -167,8 +167,7 @@ impl<'a, T> Flash<'a, [T]> {
 }
 
 impl<'a> Flash<'a, [u8]> {
-    /// Reinterprets the bytes as values of a type that allows any bytes; an incomplete value at
-    /// the end is left out.
+    /// Reinterprets the bytes as values of a [`Plain`] type; drops an incomplete value at the end.
     #[inline]
     pub const fn of<T: Plain>(self) -> Flash<'a, [T]> {
         let values = core::ptr::slice_from_raw_parts(
@@ -200,13 +199,13 @@ const fn nonzero(size: usize) -> usize {
     size
 }
 
-/// A type for which any bytes are a value, low bytes first and without padding: the same
-/// in the flash of an AVR and in the memory of a host. See [`plain!`](crate::plain!).
+/// A type of which any bytes are a valid value, low bytes first and without padding: the same in the flash of
+/// an AVR and in the memory of a host. See [`plain!`](crate::plain!).
 ///
 /// # Safety
 /// Every pattern of `size_of::<Self>()` bytes is a value, and no byte is padding.
 pub unsafe trait Plain: Copy {
-    /// The string's bytes.
+    /// The value's bytes.
     #[inline]
     fn bytes(&self) -> &[u8] {
         // SAFETY: no byte of it is padding.
@@ -231,8 +230,8 @@ unsafe impl<T: Plain, const N: usize> Plain for [T; N] {}
 // The AVR and all hosts in use have the low byte first.
 const _: () = assert!(cfg!(target_endian = "little"));
 
-/// Declares a type that can be read from flash: a struct whose fields are such types, in
-/// an order that leaves no padding, which is checked when it is compiled.
+/// Declares a type that can be read from flash: a struct whose fields are such types, in an order that leaves
+/// no padding. The compiler checks this.
 ///
 /// ```
 /// lizard_avr::plain! {
@@ -345,10 +344,10 @@ macro_rules! flash {
     ($($(#[$meta:meta])* $vis:vis const $name:ident: $type:ty = $value:expr;)*) => {$(
         $(#[$meta])*
         $vis const $name: $crate::Flash<'static, $type> = {
-            // SAFETY: the section is the linker script's for constants in flash.
+            // SAFETY: the linker script puts this section, the constants, into flash.
             #[cfg_attr(target_arch = "avr", unsafe(link_section = ".progmem.data"))]
             static VALUE: $type = $value;
-            // SAFETY: `VALUE` is a static that the attribute put where `new` wants it.
+            // SAFETY: `VALUE` is a static, and the attribute puts it where `new` requires it.
             unsafe { $crate::Flash::new(&raw const VALUE) }
         };
     )*};

@@ -7,12 +7,12 @@
 //! 16-bit factors. Both are here, behind safe functions that are plain Rust everywhere
 //! else.
 //!
-//! Do not use it on an AVR with more than 64 KiB of flash: addresses have 16 bits here.
-//! For tables that are always indexed within their bounds, `avr-progmem` does the same
-//! with a richer interface, and needs a nightly compiler.
+//! Do not use this crate on an AVR with more than 64 KiB of flash: addresses have 16 bits here. For tables that
+//! are always indexed within their bounds, `avr-progmem` does the same with a richer interface, and needs a
+//! nightly compiler.
 
 #![no_std]
-#![allow(unsafe_code)] // Reaching flash and the multiplier is; see flash.rs, multiply.rs.
+#![allow(unsafe_code)] // Access to flash and the multiplier needs it; see flash.rs, multiply.rs.
 #![cfg_attr(target_arch = "avr", feature(asm_experimental_arch))]
 
 mod flash;

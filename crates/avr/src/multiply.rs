@@ -12,17 +12,16 @@ pub const fn mul(a: i16, b: i16) -> i32 {
     a as i32 * b as i32
 }
 
-/// The two halves, low and high, of `$a * $b` read as unsigned, and then
-/// whatever `$more` instructions make of them: four products of bytes, added at
-/// their places. Half the cycles of the compiler's call to a 32 by 32 bit
-/// multiplication.
+/// Multiplies two 16-bit factors, read as unsigned, into a 32-bit product. Adds four products of bytes, each at
+/// its place; then the `$more` instructions may correct the halves `low` and `high`. Takes half the cycles of
+/// the compiler's call to a 32 by 32 bit multiplication.
 #[cfg(target_arch = "avr")]
 macro_rules! product {
     ($a:expr, $b:expr $(, $more:literal)*) => {{
         let low: u16;
         let high: u16;
-        // SAFETY: arithmetic on registers only; r1 is zero again at the end,
-        // as the calling convention wants it.
+        // SAFETY: arithmetic on registers only; r1 is zero again at the end, as the calling convention
+        // requires.
         unsafe {
             core::arch::asm!(
                 "mul {a:l}, {b:l}",
@@ -59,9 +58,8 @@ pub fn mul_unsigned(a: u16, b: u16) -> u32 {
     product!(a, b)
 }
 
-/// `a * b` of signed factors, without losing the upper half. A negative factor
-/// read as unsigned is 2^16 too large, so the other one is taken off the upper
-/// half.
+/// `a * b` of signed factors, without losing the upper half. A negative factor read as unsigned is 2^16 too
+/// large, so the other factor is subtracted from the upper half.
 #[cfg(target_arch = "avr")]
 #[inline(never)]
 pub fn mul(a: i16, b: i16) -> i32 {

@@ -1,10 +1,9 @@
 //! The flash after the program, which holds the robot's section and is written separately
 //! from the program.
 //!
-//! Data that is written without a compiler lies at a fixed address. On the AVR that
-//! address is a constant of the program, so a region takes no RAM and reading it costs
-//! what reading a constant does; any address can be read, whatever is there. On any
-//! other machine a region is a slice of ordinary memory.
+//! Data that is written without a compiler lies at a fixed address. On the AVR that address is a constant of
+//! the program, so a region takes no RAM, and reading it costs the same as reading a constant. Any address can
+//! be read, whatever it holds. On any other machine a region is a slice of ordinary memory.
 
 use crate::{Flash, Plain};
 

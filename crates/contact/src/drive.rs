@@ -1,9 +1,9 @@
 //! The drive of a leg from its servo's link: `[leg.drive]` in robot.toml.
 //!
-//! Parts, bill, contact model, twin and page all use this table. With a rigid strut, a bar with
-//! two holes, the leg moves exactly with its servo. A strut with a slot and a spring does the
-//! same up to the pull of its spring; beyond that it yields in one direction. In both cases pins
-//! and gears have play, within which nothing drives the leg.
+//! Parts, bill, contact model, twin and page all use this table. With a rigid strut, a bar with two holes, the
+//! leg moves exactly with its servo. A strut with a slot and a spring does the same while the load is below the
+//! pull of its spring; beyond that it yields in one direction. In both cases pins and gears have play, within
+//! which nothing drives the leg.
 
 use crate::lag_energy::{LagEnergy, Side};
 use crate::strut::Strut;
@@ -68,8 +68,8 @@ impl Drive {
         lag.clamp(stops[0], stops[1])
     }
 
-    /// The energy of this leg's lag while its servo is at this sweep, deg. The unit of forces is
-    /// `force` N, and no pad turns its leg with more than `max` of them at a lever of 1 mm.
+    /// The energy of this leg's lag while its servo is at this sweep, deg. Forces are in units of `force` N;
+    /// `max` bounds the torque of a pad on its leg, in those units times mm.
     pub(crate) fn of_leg(&self, leg: usize, sweep: f64, force: f64, max: f64) -> LagEnergy {
         let [lower, upper] = match &self.kind {
             Kind::Rigid => [Side::Stop; 2],

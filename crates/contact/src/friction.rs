@@ -28,7 +28,7 @@ const STAGES: i32 = 5;
 const FIRST_STAGE_NEAR: i32 = 2;
 /// The largest number of Newton steps in a stage; five to eight are usual.
 const MAX_STEPS: usize = 40;
-/// Largest force (over one pad's friction) that counts as balanced.
+/// Largest net force that counts as balance, as a share of one pad's friction.
 const BALANCED: f64 = 1e-9;
 
 /// Smallest gain of a Newton step (over a pad's friction times the size of the slides) that
@@ -58,13 +58,13 @@ pub(crate) struct Pads {
 /// A body and legs that keep the motion of the previous step unless forces change it.
 #[derive(Clone, Copy)]
 pub(crate) struct Inertia {
-    /// Force for each mm by which the body's movement changes, and torque for each rad.
+    /// Force per mm, and torque per rad, by which the body's movement differs from the previous step.
     pub stiffness: Twist,
-    /// Twist of the step before.
+    /// Twist of the previous step.
     pub before: Twist,
-    /// Force for each mm by which a pad's slide changes: the mass of its leg.
+    /// Force per mm by which a pad's slide differs from the previous step, from the mass of its leg.
     pub leg_stiffness: f64,
-    /// Slides of the pads in the step before.
+    /// Slides of the pads in the previous step.
     pub slides: [Point; 4],
 }
 
@@ -90,8 +90,8 @@ pub(crate) struct Displacement {
     pub change: [f64; 4],
 }
 
-/// The rounded cost of a displacement around it. A leg's lag touches no other leg, so
-/// its row of the Hessian is eliminated at once.
+/// The rounded cost near a displacement, to second order. The lag of a leg affects no other leg, so its row of
+/// the Hessian is eliminated directly.
 struct Expansion {
     cost: f64,
     /// Gradient by the twist, with the lags eliminated.
@@ -127,7 +127,7 @@ impl Pads {
         if size < STILL {
             return self.moved_by([0.0; 3], [0.0; 4]);
         }
-        // Turns are counted in mm at the pads' radius, slides in units of the swing.
+        // Turns are measured in mm at the pads' radius, slides in units of the swing.
         let scale = Scale {
             size,
             twist: [size, size, size / largest(&self.at)],
@@ -207,8 +207,9 @@ impl Pads {
         }
     }
 
-    /// Largest distance that a leg may move without a swing, mm: back, if its spring pulls harder
-    /// than its pad holds, which needs a change of pads or springs; or on, by its motor.
+    /// Largest distance that a leg may move in a step without a swing, mm. Its motor may move it on. Its spring
+    /// pulls it back if it pulls harder than the pad holds, which happens only after a change of pads or
+    /// springs.
     fn free_move(&self) -> f64 {
         let Some(compliance) = &self.compliance else {
             return 0.0;
@@ -284,7 +285,7 @@ impl Pads {
                 )
             });
             let slope = |[a, b]: Point| (wx * a * ux + wy * b * uy) / length;
-            // Of the pad's friction and of its leg's inertia.
+            // Derivative of the pad's friction and of its leg's inertia by an unknown.
             let pull = |row: Point| load * slope(row) + inertia * dot(row, change);
             let bend = |a: Point, b: Point| {
                 let weighted = wx * wx * a[0] * b[0] + wy * wy * a[1] * b[1];
@@ -352,7 +353,7 @@ impl Scale {
 }
 
 impl Expansion {
-    /// First-order gain of the legs' own steps, besides that of the twist.
+    /// First-order gain of the legs' own steps; that of the twist is not included.
     fn predicted_gain(&self) -> f64 {
         let reduction = |leg: &Row| match leg.curvature {
             0.0 => 0.0,

@@ -20,8 +20,8 @@ pub(crate) struct LagEnergy {
     pub lower: Side,
     /// Resistance to a lag above 0.
     pub upper: Side,
-    /// The servo's motor, if the servo is not where it is asked to be; lags are then those of leg
-    /// and servo together.
+    /// The servo's motor, if the servo may lag behind its pulses; lags are then those of leg and servo
+    /// together.
     pub motor: Option<MotorStep>,
 }
 
@@ -65,7 +65,7 @@ fn rounded_ramp(x: f64, eps: f64) -> Expansion {
     if length == 0.0 {
         return (0.0, 0.5, 0.0);
     }
-    // Below 0 the sum of both would be a difference of nearly equal numbers.
+    // Below 0 this sum would be a difference of nearly equal numbers.
     let sum = match x > 0.0 {
         true => x + length,
         false => eps * eps / (length - x),
@@ -134,8 +134,8 @@ impl Stretch {
         (
             force * growth - preload * lag + rate * growth * growth / 2.0,
             pull * lever - preload,
-            // A lever that shrinks faster than the pull grows would bend the cost the
-            // other way, which Newton's method takes for flat.
+            // If the lever shrinks faster than the pull grows, the curvature is negative, which Newton's method
+            // cannot use; it gets zero instead.
             (rate * lever * lever + pull * lever_slope).max(0.0),
         )
     }
@@ -225,7 +225,7 @@ impl LagEnergy {
         )
     }
 
-    /// The servo's place behind its reference at a lag of leg and servo together, rad.
+    /// Angle of the servo behind its reference at a lag of leg and servo together, rad.
     pub fn servo(&self, lag: f64, eps: f64) -> f64 {
         match &self.motor {
             None => 0.0,
@@ -276,7 +276,7 @@ impl LagEnergy {
         let torque = torque.abs();
         let beyond = match side {
             Side::Stop if torque <= self.stop => 0.0,
-            // By golden section: torque times lag less the energy has one top.
+            // Ternary search: torque times lag minus the energy has a single maximum.
             Side::Strut { .. } if torque <= self.stop => {
                 let gain = |x: f64| torque * x - side.expand(x, 0.0, self.stop).0;
                 let (mut low, mut high) = (0.0, side.end().min(std::f64::consts::PI));
@@ -372,7 +372,7 @@ mod tests {
     fn a_strut_is_the_third_side_of_a_triangle() {
         let strut = strut(70.0);
         assert!((strut.unlagged_length - 30.2).abs() < 1e-9, "parallel arms");
-        // The arm's part square to the strut.
+        // The arm's component square to the strut.
         assert!((strut.lever().abs() - 22.0 * 70f64.to_radians().sin()).abs() < 1e-9);
         let end_lag = strut.lag_at_growth(5.0);
         let (growth, ..) = strut.at(end_lag);

@@ -1,12 +1,11 @@
 //! The contact model: the movement of a body whose feet are never lifted.
 //!
-//! Four pads stand on the floor and every one of them drags. When the legs swing, not all
-//! pads can hold, and friction decides which of them slide. The body takes the movement that
-//! loses the least power to friction, which is a small convex problem: the formula is in
-//! `ground.rs`, its solution in `friction.rs`. The shares of the weight (`stance.rs`) and the lag
-//! of a leg behind its servo (`drive.rs`) are part of the same problem. A pad is a point, whatever
-//! its shape: a leg moves its pad without turning it and the body does not tilt, so the lowest
-//! point of a dome stays the same one.
+//! Four pads stand on the floor and every one of them drags. When the legs swing, not all pads can hold, and
+//! friction decides which of them slide. The body makes the movement that loses the least power to friction,
+//! which is a small convex problem: the formula is in `ground.rs`, its solution in `friction.rs`. The shares of
+//! the weight (`stance.rs`) and the lag of a leg behind its servo (`drive.rs`) are part of the same problem. A
+//! pad is a point, whatever its shape: a leg moves its pad without turning it and the body does not tilt, so
+//! the lowest point of a dome stays the same one.
 //!
 //! [`Ground`] is one robot on one floor. [`Ground::predict`] predicts the movement for a series of
 //! sweeps, as far as it can be known; a [`Walker`] follows the sweeps step by step.
@@ -14,8 +13,9 @@
 //! of a board. The crate reads no file and knows no gait.
 //!
 //! # When not to use it
-//! The model has no inertia, and feet neither lift nor tilt. Speed changes nothing. For a robot
-//! that lifts its feet, or moves so fast that its mass counts, use a physics engine.
+//! Feet neither lift nor tilt, and only [`Walker::drive`] has motors and inertia: everywhere else speed changes
+//! nothing. For a robot that lifts its feet, or moves so fast that its mass decides where it goes, use a
+//! physics engine.
 //!
 //! ```
 //! use lizard_contact::{Body, DEFAULT_FRICTION, Drive, Feet, Ground, Stance};

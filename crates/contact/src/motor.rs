@@ -1,9 +1,9 @@
 //! A servo's motor: its torque falls as it turns faster, and its rotor takes time to spin up.
 //!
-//! A DC motor on a supply has a line: full torque at stall, none at its no-load speed. Below
-//! its limit a servo applies torque in proportion to its error. Its rotor, seen through
-//! hundreds to one of gears, is far harder to turn than a leg, so rotor and friction alone decide
-//! how well the servo follows its pulses.
+//! The torque of a DC motor on a supply falls in a straight line, from full torque at stall to none at the
+//! no-load speed. Below its limit a servo applies torque in proportion to its error. Seen through gears with a
+//! ratio of several hundred, its rotor is far harder to turn than a leg, so only rotor and friction decide how
+//! well the servo follows its pulses.
 
 use crate::joints::Joints;
 
@@ -42,14 +42,14 @@ impl Motor {
         self.damping() * self.spin_up
     }
 
-    /// The share of the motor's line that a torque (N mm) at a rate (deg/s) uses: 1 on the line
-    /// itself, negative where the motor brakes.
+    /// The share of the motor's torque-speed line that a torque (N mm) at a rate (deg/s) uses: 1 on the line
+    /// itself, negative while the motor brakes.
     pub fn line_share(&self, torque: f64, rate: f64) -> f64 {
         torque / self.stall + rate / self.rate
     }
 }
 
-/// The motors of the four servos, and the friction of pins and sliders, which they turn besides the
+/// The motors of the four servos, and the friction of pins and sliders, which loads them in addition to the
 /// feet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Motors {
@@ -65,20 +65,20 @@ const MAX_STEP: f64 = 0.0025;
 const STEP_PER_RADIAN: f64 = 0.25;
 
 impl Motors {
-    /// The time step of the simulation of the motors, s: a light rotor with a high gain swings
-    /// fast, and a long step would damp it.
+    /// The time step of the simulation of the motors, s: a light rotor with a high gain vibrates fast, and a
+    /// long step would damp it.
     pub(crate) fn step(&self) -> f64 {
         let swing = |motor: &Motor| match motor.spin_up > 0.0 {
             true => (motor.full / motor.rate * motor.spin_up).sqrt(),
-            // Without a rotor nothing swings.
+            // Without a rotor nothing vibrates.
             false => f64::INFINITY,
         };
         let swings = self.each.iter().map(|motor| STEP_PER_RADIAN * swing(motor));
         swings.fold(MAX_STEP, f64::min)
     }
 
-    /// The speed of a slider, mm/s, below which its friction fades so that in a step of time it
-    /// cannot turn a servo back.
+    /// The speed of a slider, mm/s, below which its friction fades so that in a time step it cannot turn a
+    /// servo back.
     pub(crate) fn fade_speed(&self, seconds: f64) -> f64 {
         let arm = |[x, y]: [f64; 2]| x * x + y * y;
         let square = self.joints.arms.map(arm).into_iter().fold(0.0, f64::max);
@@ -275,7 +275,7 @@ mod tests {
             &motors(SG90, JOINTS),
         );
         let (servo, lag) = (walker.servos()[0], walker.lag()[0]);
-        // On its way the servo drags the leg at the end of its play; at its end nothing pulls.
+        // While it turns, the servo drags the leg at the end of its play; at its target nothing pulls.
         assert!(
             (servo - 10.0).abs() < 1e-6 && lag.abs() < 1.0,
             "{servo} {lag}"

@@ -1,6 +1,6 @@
-//! A servo's motor in a short step of time, as one convex function of the servo's place at its end: the motor's torque, its
-//! damping and its rotor's change of speed are the slopes of it. So the contact problem of `friction.rs` takes a servo as it
-//! takes a spring.
+//! A servo's motor in a short time step, as one convex function of the servo's place at its end. The slopes of
+//! that function are the motor's torque, its damping and the inertia of its rotor. So the contact problem of
+//! `friction.rs` treats a servo like a spring.
 
 use crate::motor::Motor;
 
@@ -147,7 +147,7 @@ impl MotorStep {
     }
 }
 
-/// Iterations of a balance at most: as many as bisection alone would need.
+/// The largest number of iterations of a balance: as many as bisection alone would need.
 const MAX_ITERATIONS: usize = 60;
 
 #[cfg(test)]

@@ -22,8 +22,8 @@ impl Place {
         heading: 0.0,
     };
 
-    /// Moves the body by a twist, held for a unit of time: the screw motion, so that the opposite
-    /// twist leads back.
+    /// Moves the body by a twist, held for a unit of time. The path is an arc, so that the opposite twist leads
+    /// back exactly.
     pub(crate) fn moved(self, [forward, left, turn]: Twist) -> Self {
         // sin(turn)/turn and (1 - cos(turn))/turn without a division by zero.
         let half = turn / 2.0;
@@ -47,7 +47,7 @@ impl Place {
         }
     }
 
-    /// The place after a movement that is seen from this one: the opposite of [`Place::seen_from`].
+    /// The place after a movement that is seen from this one: the inverse of [`Place::seen_from`].
     pub fn after(self, movement: Travel) -> Self {
         let [forward, left] = self.on_floor([movement.forward, movement.left]);
         Self {

@@ -9,7 +9,7 @@ use crate::ground::Ground;
 use crate::travel::{Prediction, Travel};
 use crate::walker::Walker;
 
-/// Unevenness of the pads in the test for ties, as a share. No print and no floor is more even.
+/// Unevenness of the pads in the test for ties, as a share. No printed pad and no floor is more even.
 const UNEVEN: f64 = 0.01;
 /// Share of the path's length by which a decided movement may differ on uneven pads.
 const DECIDED_SHARE: f64 = 0.05;
@@ -26,7 +26,7 @@ struct Uneven {
 }
 
 impl Uneven {
-    /// Makes walks in which each pad in turn is pressed harder, or the friction backward differs.
+    /// Makes walks in which each pad in turn has a larger load, or the backward friction differs.
     fn all(ground: &Ground, sweeps: [f64; 4]) -> [Self; 6] {
         let uneven = |load, ratio| Self {
             walker: Walker::with_unevenness(*ground, sweeps, load, ratio),
@@ -44,7 +44,7 @@ impl Uneven {
         })
     }
 
-    /// Takes the servos to these sweeps while the even pads move by `twists`.
+    /// Moves the servos to these sweeps, and sums how far each twist differs from `twists`, those of even pads.
     fn follow(&mut self, sweeps: [f64; 4], twists: &[Twist]) {
         let (mut part, differs) = (twists.iter(), &mut self.differs);
         self.walker.move_servos(sweeps, |_, displacement| {
@@ -60,14 +60,13 @@ impl Ground {
     /// Predicts the movement for these sweeps (deg, foot forward positive, servo order) one after
     /// another, as far as it does not depend on ties.
     ///
-    /// The same sweeps are followed on pads made uneven by a hundredth, each pad in turn and all of
-    /// them backward against forward. If two feet pull against two, the body then goes with one
-    /// pair or with the other. A part of the movement is undecided if its end differs by more than
-    /// 1 mm (0.5 deg) and by more than a twentieth of the length of the path. Ahead and turn are
-    /// also compared step by step: a body dragged to and fro by one pair of feet ends at its start,
-    /// whichever pair it is, but if the pairs change on the way it may end anywhere in between.
-    /// Sideways only the end counts: legs that swing together always spread and close, and bring
-    /// the body back within one swing.
+    /// The same sweeps are followed on pads made uneven by a hundredth, each pad in turn, then the backward
+    /// friction of all of them. If two feet pull against two, the body then follows one pair or the other. A
+    /// part of the movement is undecided if its end differs by more than 1 mm (0.5 deg) and by more than a
+    /// twentieth of the length of the path. Ahead and turn are also compared step by step: a body dragged to
+    /// and fro by one pair of feet ends at its start, whichever pair it is, but if the pairs change in between
+    /// it may end anywhere on that path. Sideways only the end counts: legs that swing together always spread
+    /// and close, and bring the body back within one swing.
     pub fn predict(&self, sweeps: impl IntoIterator<Item = [f64; 4]>) -> Prediction {
         let mut sweeps = sweeps.into_iter();
         let first = sweeps.next().unwrap_or_default();
@@ -143,14 +142,14 @@ mod tests {
         stance: Stance::LEVEL,
     };
 
-    /// A cycle of legs that all do the same, each from a phase of its own.
+    /// A cycle of legs that all have the same wave, each with its own phase.
     fn cycle(starts: [f64; 4], wave: impl Fn(f64) -> f64) -> Vec<[f64; 4]> {
         let sweeps_at =
             |i: i32| starts.map(|start| wave((f64::from(i) / 400.0 - start).rem_euclid(1.0)));
         (0..=400).map(sweeps_at).collect()
     }
 
-    /// Backward at one pace over `duty` of the cycle, then forward.
+    /// A wave that goes backward at constant speed over `duty` of the cycle, then forward.
     fn stroke(duty: f64) -> impl Fn(f64) -> f64 {
         move |phase| {
             20.0 * if phase < duty {

@@ -43,7 +43,7 @@ impl Strut {
         // From the leg's pivot to the servo's end of the strut.
         let far = [self.radius * cos - self.length, self.radius * sin];
         let between = wrap(arm - far[1].atan2(far[0]).to_degrees());
-        // A lag turns the leg's arm against the way forward.
+        // A lag turns the leg's arm against the forward direction.
         let angle = -FORWARD[leg] * between.to_radians();
         Stretch::new(far[0].hypot(far[1]), self.radius, angle)
     }
@@ -62,7 +62,7 @@ impl Strut {
         (lag.to_degrees(), torque)
     }
 
-    /// The energy of a lag against the sweep's direction and along it, in units of `force` N.
+    /// The resistance to a lag against the sweep's direction and along it, in units of `force` N.
     pub(crate) fn sides(&self, leg: usize, sweep: f64, force: f64) -> [Side; 2] {
         let stretch = self.stretch(leg, sweep);
         let side = Side::strut(stretch, self.force / force, self.rate / force, self.slot);

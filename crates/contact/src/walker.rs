@@ -1,8 +1,7 @@
 //! The robot on its floor, step by step.
 //!
-//! The body's movement in a step depends on earlier steps, because they leave each leg a lag
-//! behind its servo. So a [`Walker`] follows a walk: it holds the servos, the lags and the place on
-//! the floor.
+//! The body's movement in a step depends on earlier steps, because they leave each leg with a lag behind its
+//! servo. So a [`Walker`] follows a walk: it holds the servos, the lags and the place on the floor.
 
 use crate::feet::{Body, Feet};
 use crate::friction::{Compliance, Displacement, Inertia, Pads, Point, Twist};
@@ -14,7 +13,7 @@ use crate::place::Place;
 
 /// Largest sweep of a step, deg. A larger one is divided into equal steps.
 const MAX_SWEEP: f64 = 0.5;
-/// Iterations of a step at most. The pads are taken in the middle of a step, which depends on the
+/// The largest number of iterations in a step. The pads are taken in the middle of a step, which depends on the
 /// lags after it; each iteration improves the middle.
 const MAX_ITERATIONS: usize = 4;
 /// Change of a lag in an iteration below which the lag counts as settled, rad.
@@ -170,7 +169,7 @@ impl Walker {
             None => servos[i],
         });
         let from = self.ground.feet.at(self.legs());
-        // With its load a motor gets nearly as far as without it.
+        // A loaded motor turns nearly as far as an unloaded one, so this is a good estimate.
         let near = std::array::from_fn(|i| {
             self.lag[i].to_radians()
                 + motor_steps[i].map_or(0.0, |motor_step| motor_step.unloaded_end())
@@ -194,8 +193,8 @@ impl Walker {
         (pads, displacement)
     }
 
-    /// The inertia in a step of time: of the body, as if its mass stood at the hips, and of the legs, whose
-    /// mass is at the pads.
+    /// The inertia in a time step: of the body, as if its mass stood at the hips, and of the legs, whose mass
+    /// is at the pads.
     fn inertia(&self, seconds: f64) -> Inertia {
         const KG_PER_G: f64 = 1e-3;
         const M_PER_MM: f64 = 1e-3;
@@ -284,7 +283,7 @@ impl Walker {
         let ends: [f64; 4] = std::array::from_fn(|i| servos[i] - lag[i].to_degrees());
         let to = feet.at(ends);
         let along = feet.along(ends);
-        // In the middle of the step, so that the way back is its exact inverse.
+        // In the middle of the step, so that the reverse step is its exact inverse.
         let positions = points_from(&|i, j| (from[i][j] + to[i][j]) / 2.0);
         let lag_before = self.lag.map(f64::to_radians);
         let (load, ratio) = self.uneven;

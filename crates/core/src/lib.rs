@@ -5,8 +5,8 @@
 //! into four pulse widths that the servos can follow and that cannot break a linkage of
 //! the robot.
 //!
-//! Values move one way. A console gives orders to the robot, the robot computes a frame
-//! fifty times a second, and its answers go back the same way:
+//! Values move in one direction. A console gives orders to the robot, the robot computes a frame fifty times a
+//! second, and its answers return along the same path:
 //!
 //! ```text
 //!         Console                     Control                                Board

@@ -1,9 +1,9 @@
-//! Robots for the tests of this crate, made at run time from measurements in floating
-//! point. The integers are compared with the same measurements.
+//! Robots for the tests of this crate, made at run time from measurements in floating point. The tests compare the
+//! integers with the same measurements.
 //!
-//! [`Sample::odd`] and the random ones have no symmetry at all: no two bars are equally
-//! long, each kind of limit differs, every servo has a gain, a neutral width and a travel
-//! of its own. So a test fails if the code uses one part's number for another part.
+//! [`Sample::odd`] and the random robots have no symmetry at all: no two bars are equally long, each kind of limit
+//! differs, and every servo has its own gain, neutral width and travel. So a test fails if the code uses one part's
+//! number for another part.
 
 pub mod bounds;
 mod end;
@@ -41,10 +41,10 @@ use end::steps;
 /// Steps of an angle in a degree.
 pub const STEPS_PER_DEGREE: f64 = 65536.0 / 360.0;
 
-/// The gaits of every sample; the last one leaves safe ground halfway.
+/// The gaits of every sample; the last one becomes unsafe halfway.
 pub const GAITS: [&str; 6] = ["stand", "sway", "sway left", "swing", "back", "stray"];
 
-/// The sweeps that the gaits need of the servos, within the travel; see [`waves`].
+/// The range of sweeps that the gaits need of each servo, within the travel; see [`waves`].
 const REACH: [Reach; 4] = [
     Reach {
         min: Sweep(-2000),
@@ -64,7 +64,7 @@ const REACH: [Reach; 4] = [
     },
 ];
 
-/// A reference of 1.08 V; the servos' rail through 10 and 4.7 kiloohms.
+/// A reference voltage of 1.08 V, and the servos' rail measured through a divider of 10 and 4.7 kiloohms.
 const SUPPLIES: Supplies = Supplies {
     reference: 1080,
     board: Thresholds {
@@ -80,10 +80,10 @@ const SUPPLIES: Supplies = Supplies {
     },
 };
 
-/// Another pace of a low supply than robots without a measured rail have, percent.
+/// The pace on a low supply, percent; it differs from that of robots without a measured rail.
 pub const SLOW_PACE: u8 = 67;
 
-/// A robot in integers, and what it was made from.
+/// A robot in integers, and the measurements it was made from.
 #[derive(Clone, Debug)]
 pub struct Sample {
     pub measures: Measures,
@@ -162,19 +162,18 @@ impl Sample {
         self
     }
 
-    /// See [`Measures::paper`].
+    /// The robot of [`Measures::paper`].
     pub fn paper() -> Self {
         Self::new(Measures::paper())
     }
 
-    /// See [`Measures::odd`].
+    /// The robot of [`Measures::odd`].
     pub fn odd() -> Self {
         Self::new(Measures::odd())
     }
 
-    /// See [`Measures::random`]. Each stands safely in its neutral pose by the integers, as
-    /// every robot of a firmware must: within their roundings, floating point calls some
-    /// poses safe that the integers do not.
+    /// Random robots of [`Measures::random`]. The integer guard accepts the neutral pose of each, as it must for
+    /// every robot of a firmware: because of rounding, some poses are safe in floating point but not in integers.
     pub fn random() -> impl Strategy<Value = Self> {
         Measures::random()
             .prop_map(Self::new)
@@ -185,7 +184,7 @@ impl Sample {
         Clearance::of(self, &Pose::NEUTRAL).hazard(self).is_none()
     }
 
-    /// The same robot under another hash.
+    /// The same robot with another hash.
     pub fn with_hash(&self, hash: u32) -> Robot<'static> {
         let mut section = self.content.section();
         let offset = offset_of!(Header, hash);
@@ -196,7 +195,7 @@ impl Sample {
         Robot::unchecked(Region::new(Vec::leak(section))).expect("a whole section")
     }
 
-    /// Adds a gait of this name that stands still.
+    /// Adds a gait of this name whose servos do not move.
     pub fn with_gait(self, name: &str) -> Self {
         self.with(|content| {
             content.gaits.push(Gait {
@@ -209,8 +208,8 @@ impl Sample {
         })
     }
 
-    /// The sample with a routine that repeats its steps, each a kind, a gait or an input, and a
-    /// count; 0 rounds do not end.
+    /// Adds a routine that repeats `steps`. Each step is a kind, a gait or an input, and a count; 0 rounds do not
+    /// end.
     pub fn with_routine(self, name: &str, rounds: u16, steps: &[(u8, &str, u16)]) -> Self {
         let steps: Vec<Step> = steps
             .iter()
@@ -241,7 +240,7 @@ impl Sample {
         pose.angles(&self.neutral()).map(degrees)
     }
 
-    /// The exact solution of a pose; `None` where a loop does not close.
+    /// The exact solution of a pose; `None` if a loop does not close.
     pub fn solve(&self, pose: &Pose) -> Option<kinematics::Solution> {
         let angles = self.degrees(pose);
         self.measures.lizard.solve(&angles.into()).ok()
@@ -256,7 +255,7 @@ impl Sample {
 }
 
 impl Robot<'_> {
-    /// A gait by its name.
+    /// Finds a gait by its name.
     pub fn id(&self, name: &str) -> GaitId {
         GaitId::all(self.gait_count())
             .find(|id| self.name(*id).eq(name.bytes()))
@@ -264,7 +263,7 @@ impl Robot<'_> {
     }
 }
 
-/// The robot of a section, which is kept until the tests end.
+/// Makes the robot of a section, which stays in memory until the tests end.
 fn read(content: &Content) -> Robot<'static> {
     Robot::unchecked(Region::new(Vec::leak(content.section()))).expect("a whole section")
 }
@@ -279,7 +278,7 @@ pub fn sine(sine: Sine) -> f64 {
     f64::from(sine.0) / 32768.0
 }
 
-/// A side in the finest step that holds it, its stroke rounded inwards.
+/// A side in the finest step that its lengths allow, with its stroke rounded inwards.
 pub fn side_of(side: &kinematics::Slider, stroke_min: f64, stroke_max: f64) -> Slider {
     let all = side.base + side.front + side.rear + side.offset.abs();
     let across = side.front + side.rear + side.offset.abs();
@@ -320,7 +319,7 @@ pub const WELL: Health = Health {
 pub const BUTTON: Input = Input::button(15);
 pub const NOSE: Input = Input::nose(16);
 
-/// A sine, a slow rise with a quick fall, and a hump, as large as a gain asks.
+/// A sine, a slow rise with a quick fall, and a hump, each to be scaled by a gain.
 fn waves() -> Vec<Wave> {
     let wave = |function: fn(f64) -> f64| -> Wave {
         core::array::from_fn(|n| (function(n as f64 / SAMPLES as f64) * 1820.0).round() as i16)
@@ -336,7 +335,7 @@ fn waves() -> Vec<Wave> {
     ]
 }
 
-/// The gaits that [`GAITS`] names.
+/// The gaits named in [`GAITS`].
 fn gaits(names: &mut Vec<u8>) -> Vec<Gait> {
     let channel = |wave, offset, gain| Channel { wave, offset, gain };
     let still = [channel(0, 0, 0); 4];

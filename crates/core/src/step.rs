@@ -1,12 +1,10 @@
-//! The one step that a firmware's main loop repeats.
+//! The step that a firmware's main loop repeats.
 //!
-//! The tick of the pulses or a byte wakes main. It does one thing at a time and looks for
-//! a tick first, so a frame waits for one byte or one line at most. It takes no input
-//! while it writes its memory (3.4 ms a byte), or while an answer waits for room in the
-//! serial line; so it never waits for a listener. It computes one frame for a tick. If it
-//! is too late for a tick, it leaves that tick out: several frames at once would be
-//! played as one, and the servos would leap. It also leaves a tick out while a late frame
-//! still waits to be played.
+//! A tick of the pulses or a received byte wakes the main loop. It does one thing at a time and looks for a tick
+//! first, so a frame waits for one byte or one line at most. It takes no input while it writes its memory (3.4 ms a
+//! byte), or while an answer waits for room in the serial line; so it never waits for a listener. It computes one
+//! frame per tick. If it is too late for a tick, it skips that tick: only the last of several frames would be played,
+//! and the servos would jump. It also skips a tick while a late frame still waits to be played.
 
 use lizard_avr::Region;
 
@@ -24,54 +22,52 @@ use crate::numbers::units::CYCLES_PER_US;
 
 /// The hardware that the main loop needs.
 pub trait Board {
-    /// The serial line's other direction.
+    /// The writer of the serial line.
     type Writer: Output;
 
-    /// The memory that keeps its bytes without power.
+    /// The memory that keeps its bytes without power, an EEPROM.
     type Memory: Memory;
 
     /// Bytes that an idle writer takes without waiting; at least [`LONGEST_LINE`], since a
     /// line is written only when there is room for all of it.
     const ROOM: u8;
 
-    /// Steps of a pulse's width in a microsecond; the core counts in 1/16 us.
+    /// Steps of a pulse width in a microsecond; the core counts in 1/16 us.
     const CYCLES_PER_US: u16;
 
-    /// Connects the servos A1 to A4 to these pins, and the measured rail, if there is
-    /// one, by their Arduino numbers; 14 to 19 are A0 to A5. Called once, before the first
-    /// pulses.
+    /// Connects the servos A1 to A4, and the measured rail if there is one, to the pins with these Arduino numbers;
+    /// 14 to 19 are A0 to A5. Called once, before the first pulses.
     fn connect(&mut self, servos: [u8; 4], rail: Option<u8>);
 
-    /// Ticks since power-on, modulo 256; one every 20 ms.
+    /// The number of ticks since power-on, modulo 256; there is one every 20 ms.
     fn ticks(&self) -> u8;
 
-    /// True if the pulses handed over last, if any, have been taken over: then the clock
-    /// and all that makes pulses are alive.
+    /// True if the last submitted pulses have been taken over, or none were submitted. This shows that the clock and
+    /// everything that makes pulses work.
     fn is_taken(&self) -> bool;
 
-    /// Hands over the pulses of the next frame, in place of any that have not been taken
-    /// over.
+    /// Submits the pulses of the next frame; they replace any that have not been taken over.
     fn submit(&mut self, pulses: Pulses);
 
-    /// Feeds the watchdog, which restarts the program when it hangs. Once it has
-    /// ended the pulses, nothing may put it off, and main must not go on.
+    /// Feeds the watchdog, which restarts the program if it hangs. Once the watchdog has ended the pulses, nothing
+    /// may delay the restart, and the main loop must not continue.
     fn feed(&mut self);
 
-    /// Stores the servos' state and the consecutive resets that a weak supply may have
-    /// caused, where they survive a reset of the processor.
+    /// Stores the servos' state, and the number of consecutive resets that a weak supply may have caused, in memory
+    /// that survives a reset of the processor.
     fn store_stance(&mut self, stance: &Stance, brown_outs: u8);
 
-    /// The cause of the last reset, and the state from before it.
+    /// The cause of the last reset, and the state stored before it.
     fn restart(&self) -> &Restart;
 
-    /// The supplies as measured last; begins the next measurement.
+    /// Returns the last measurement of the supplies and starts the next one.
     fn supply(&mut self) -> Reading;
 
-    /// True while the stack has not grown into the data.
+    /// True unless the stack has grown into the data.
     fn is_stack_intact(&self) -> bool;
 
-    /// True while the contact between this pin, by its Arduino number, and ground is closed.
-    /// Switches the pin's pull-up on.
+    /// True while the contact between this pin, given by its Arduino number, and ground is closed. Also switches the
+    /// pin's pull-up on.
     fn is_closed(&mut self, pin: u8) -> bool;
 
     /// The memory that keeps its bytes without power.
@@ -80,24 +76,23 @@ pub trait Board {
     /// Switches the LED on or off.
     fn set_led(&mut self, is_on: bool);
 
-    /// Bytes that the writer takes at this moment without waiting.
+    /// Bytes that the writer takes now without waiting.
     fn room(&self) -> u8;
 
     /// The serial line's writer.
     fn writer(&mut self) -> &mut Self::Writer;
 
-    /// The next byte received, if any; [`crate::console::line::GARBLED`] for one that came
-    /// garbled.
+    /// The next received byte, if any; [`crate::console::line::GARBLED`] if the byte arrived garbled.
     fn receive(&mut self) -> Option<u8>;
 
-    /// Changes the rate of the serial line, and stores it where it survives a reset.
+    /// Changes the rate of the serial line, and stores the rate in memory that survives a reset.
     fn set_rate(&mut self, rate: Rate);
 
-    /// Faults counted so far.
+    /// The counts of faults so far.
     fn counters(&self) -> Counters;
 }
 
-/// The robot, its console at the serial line, and the tick of its last frame.
+/// The robot's control, its console on the serial line, and the tick of its last frame.
 #[derive(Clone, Debug)]
 pub struct Main {
     control: Control,
@@ -121,10 +116,10 @@ impl Default for Main {
 }
 
 impl Main {
-    /// A main without a robot; [`Main::begin`] has to follow.
+    /// Makes a main loop without a robot; [`Main::begin`] has to follow.
     ///
-    /// Every bit of it is zero, so that a firmware's `Main` needs no copy in flash; its linker
-    /// script refuses one that does.
+    /// All its bits are zero, so that a firmware's `Main` needs no initial values in flash; the linker script rejects
+    /// one that needs them.
     pub const fn new() -> Self {
         Self {
             control: Control::new(),
@@ -133,8 +128,7 @@ impl Main {
         }
     }
 
-    /// Begins on a board, with the robot at the beginning of `flash`. To be called once, before
-    /// the first step.
+    /// Starts on a board, with the robot at the beginning of `flash`. Must be called once, before the first step.
     #[inline(always)]
     pub fn begin<B: Board>(&mut self, flash: Region<'static>, board: &mut B) {
         const {
@@ -156,7 +150,7 @@ impl Main {
         &self.control
     }
 
-    /// The console at its serial line.
+    /// The console on the serial line.
     pub const fn console(&self) -> &Console {
         &self.console
     }
@@ -203,7 +197,7 @@ impl Main {
         } else if let Some(byte) = board.receive() {
             let rested = self.control.motion().is_resting();
             self.console.receive(byte, &mut self.control);
-            // Before the answer: a reset may come right after it.
+            // Stored before the answer, because a reset may follow the answer at once.
             if self.control.motion().is_resting() != rested {
                 self.store_stance(board);
             }

@@ -1,13 +1,10 @@
-//! The board for hosts: it does what the UNO's registers, pins and interrupts do, but
-//! has none.
+//! The virtual board, for hosts: it behaves like the UNO's registers, pins and interrupts, without a chip.
 //!
-//! Every program that runs the core on a host (tests, the fuzzer, the page in a browser,
-//! the comparison with the simulated UNO) runs [`Main::step`] on this board. So they all
-//! test the loop that the UNO repeats, and not a similar one. [`Running`] combines the
-//! two, and its methods read like sentences.
+//! Every program that runs the core on a host (tests, the fuzzer, the page in a browser, the comparison with the
+//! simulated UNO) runs [`Main::step`] on this board. So they all test the same loop that the UNO repeats. [`Running`]
+//! combines the board and the loop for them.
 //!
-//! Time is a call, [`VirtualBoard::pass_time`], by the millisecond. What a frame of 20 ms
-//! is made of:
+//! Time passes only when [`VirtualBoard::pass_time`] is called, in milliseconds. The events in a frame of 20 ms:
 //!
 //! | ms | what |
 //! |---|---|
@@ -15,7 +12,7 @@
 //! | 4 | the frame that main handed over is taken over, and A1's pulse begins |
 //! | 8, 12, 16 | the pulses of A2, A3 and A4 begin |
 //!
-//! It is compact, because it is cloned and hashed by the million.
+//! The board is compact, because it is cloned and hashed millions of times.
 //!
 //! [`Main::step`]: crate::step::Main::step
 
@@ -44,18 +41,17 @@ pub use transmitter::Transmitter;
 /// Milliseconds from one tick to the next.
 pub const FRAME_MS: u8 = units::FRAME_MS as u8;
 
-/// Milliseconds from the tick to the hand-over, and from one servo's pulse to the
-/// next one's.
+/// Milliseconds from the tick to the hand-over, and from the start of one servo's pulse to that of the next servo.
 const SLOT_MS: u8 = 4;
 
-/// Milliseconds unfed after which the watchdog interrupts the program; it resets it
-/// after as many more.
+/// Milliseconds without feeding after which the watchdog interrupts the program; after the same time again, it resets
+/// the processor.
 pub const WATCHDOG_MS: u16 = 125;
 
-/// Bytes that the receiver holds for main.
+/// Bytes that the receiver stores for the main loop.
 const RECEIVED: usize = 64;
 
-/// Widths that a slot has room for; any other gives no pulse.
+/// The pulse widths that fit a slot; any other gives no pulse.
 const WIDTHS: core::ops::RangeInclusive<u16> = 1_000..=63_000;
 
 /// A board without a chip.
@@ -72,23 +68,23 @@ pub struct VirtualBoard {
     is_lit: bool,
     received: VecDeque<u8>,
     lost: u16,
-    /// Edges that came late.
+    /// Pulse edges that came late.
     pub late: u16,
-    /// True while the stack has not grown into the data.
+    /// True unless the stack has grown into the data.
     pub is_stack_intact: bool,
-    /// The pins whose contacts are closed, a bit for each Arduino number.
+    /// The pins whose contacts are closed, one bit for each Arduino number.
     pub closed: u32,
-    /// The pins whose pull-ups are on.
+    /// The pins whose pull-ups are on, in the same bits.
     pub pulled_up: u32,
-    /// The serial line's other direction.
+    /// The transmitter of the serial line.
     pub transmitter: Transmitter,
     /// The memory that keeps its bytes without power.
     pub memory: Eeprom,
-    /// The converter that measures the supplies.
+    /// The analogue-to-digital converter that measures the supplies.
     pub converter: Converter,
     /// The bytes that survive a reset.
     pub ram: Ram,
-    /// True if a boot loader hides the chip's cause of a reset.
+    /// True if a boot loader hides the cause of a reset from the program.
     pub has_boot_loader: bool,
     restart: Restart,
     /// The rate of the serial line.
@@ -96,7 +92,7 @@ pub struct VirtualBoard {
     /// Milliseconds since the watchdog was fed.
     unfed: u16,
     is_hushed: bool,
-    /// The servos' pins and the rail's, once main has named them.
+    /// The pins of the servos and of the rail, once the main loop has connected them.
     connected: Option<([u8; 4], Option<u8>)>,
 }
 
@@ -136,7 +132,7 @@ impl VirtualBoard {
         }
     }
 
-    /// The same board after a reset with this cause and state.
+    /// Returns the board after a reset with this cause and state.
     #[must_use]
     pub fn restarted(self, restart: Restart) -> Self {
         if let Some(stance) = &restart.before {
@@ -150,14 +146,14 @@ impl VirtualBoard {
         }
     }
 
-    /// The same board at this tick.
+    /// Returns the board at this tick.
     #[must_use]
     pub fn at_tick(self, ticks: u8) -> Self {
         Self { ticks, ..self }
     }
 
-    /// Lets time pass, at most until the watchdog resets the processor, since main does not
-    /// feed it. Returns true in that case; then [`VirtualBoard::reset`] has to follow.
+    /// Lets time pass in which the main loop does not feed the watchdog. Stops and returns true as soon as the
+    /// watchdog resets the processor; [`VirtualBoard::reset`] has to follow then.
     pub fn pass_time(&mut self, ms: u16) -> bool {
         for _ in 0..ms {
             self.unfed = self.unfed.saturating_add(1);
@@ -192,7 +188,7 @@ impl VirtualBoard {
         }
     }
 
-    /// Gives a tick at once, after taking over the submitted frame.
+    /// Takes over the submitted frame and gives a tick at once.
     pub fn tick(&mut self) {
         self.take_over();
         self.ticks = self.ticks.wrapping_add(1);
@@ -211,13 +207,13 @@ impl VirtualBoard {
         (FRAME_MS - self.ms) as u16
     }
 
-    /// Resets the processor: its state is lost, and main has to begin again.
+    /// Resets the processor: its state is lost, and the main loop has to start again.
     pub fn reset(&mut self, cause: Cause) {
         let power_on = cause == Cause::Power;
         let reported = (!self.has_boot_loader).then_some(cause);
         let ram = core::mem::take(&mut self.ram);
         let mut memory = core::mem::take(&mut self.memory);
-        // A start takes longer than a write of the memory.
+        // A start takes longer than writing a byte to the memory.
         memory.settle();
         *self = Self {
             transmitter: core::mem::take(&mut self.transmitter).reset(),
@@ -235,8 +231,8 @@ impl VirtualBoard {
         self.rate = self.restart.rate;
     }
 
-    /// Turns the power off and on. A byte that was being written to the memory gets the value
-    /// `torn`: it may hold anything.
+    /// Turns the power off and on. If a byte is being written to the memory, it gets the value `torn`, since it may
+    /// hold anything.
     pub fn lose_power(&mut self, torn: Option<u8>) {
         if let Some(byte) = torn {
             self.memory.cut_power(byte);
@@ -244,7 +240,7 @@ impl VirtualBoard {
         self.reset(Cause::Power);
     }
 
-    /// Sends bytes to the board. Bytes that the receiver has no room for are lost.
+    /// Sends bytes to the board. Bytes that do not fit into the receiver are lost.
     pub fn send(&mut self, bytes: &[u8]) {
         for byte in bytes {
             if self.received.len() < RECEIVED {
@@ -255,7 +251,7 @@ impl VirtualBoard {
         }
     }
 
-    /// The number of bytes that main has not read yet.
+    /// The number of bytes that the main loop has not read yet.
     pub fn unread(&self) -> usize {
         self.received.len()
     }
@@ -265,12 +261,12 @@ impl VirtualBoard {
         self.lost = self.lost.saturating_add(bytes);
     }
 
-    /// The frame that main submitted last.
+    /// The frame that the main loop submitted last.
     pub const fn submitted(&self) -> Pulses {
         self.submitted
     }
 
-    /// True while that frame waits to be taken over.
+    /// True while the submitted frame waits to be taken over.
     pub const fn is_fresh(&self) -> bool {
         self.is_fresh
     }

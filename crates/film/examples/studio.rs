@@ -1,7 +1,8 @@
-//! A film with known truth for the page's tests: FOLDER/film.y4m, which a browser takes as its camera's pictures; the same pictures
-//! in FOLDER/pictures; and the true way of a cycle in FOLDER/truth.json.
+//! A film with known truth for the page's tests: FOLDER/film.y4m, which a browser uses as its camera; the same
+//! pictures in FOLDER/pictures; and the true displacement of a cycle in FOLDER/truth.json.
 //!
-//! `studio FOLDER WIDTH CYCLES [HIDDEN TAG]...`: so many cycles of the paper's `walk`, with a rest before and after.
+//! `studio FOLDER WIDTH CYCLES [HIDDEN TAG]...`: the given number of cycles of the paper's `walk`, with a rest before
+//! and after.
 #![allow(dead_code, missing_docs)] // The tests use more of these modules.
 
 #[path = "../tests/film/render.rs"]
@@ -19,12 +20,12 @@ use jpeg_encoder::{ColorType, Encoder};
 use render::Studio;
 use walk::{Varies, Walk, gait, truth};
 
-/// Pictures in a second. Chromium shows a late one at its time if it is late by less than the time of one, so few
-/// of them stay in step on a busy machine.
+/// Pictures per second. Chromium keeps a late picture in step if the delay is shorter than the time of one picture,
+/// so a low rate stays in step on a busy machine.
 const RATE: u32 = 10;
-/// Grey of a picture's two planes of colour.
+/// The neutral value of the two colour planes of a picture.
 const COLOURLESS: u8 = 128;
-/// Standard deviations of a cycle: mm, mm, rad.
+/// Standard deviations of a cycle's displacement and turn: mm, mm, rad.
 const CYCLE: [f64; 3] = [0.1, 0.1, 0.002];
 const QUALITY: u8 = 85;
 

@@ -1,23 +1,23 @@
 //! The dark blobs of a picture, and the four corners of those that are quadrilaterals.
 //!
-//! Light falls unevenly and a floor may be dark, so a pixel is dark by comparison with the mean
-//! of its surroundings. A tag has a black frame with white around it: its dark pixels hang
-//! together and no others hang on to them.
+//! Light falls unevenly and a floor may be dark, so a pixel counts as dark by comparison with the mean of its
+//! surroundings. A tag has a black frame with white around it: its dark pixels are connected to each other and to no
+//! others.
 
 use crate::picture::{Picture, Pixel};
 
 /// Half the edge of a pixel's surroundings, as a share of the picture's height.
 const AROUND: f64 = 1.0 / 24.0;
-/// Grey of a dark pixel over the mean of its surroundings, percent.
+/// Largest grey of a dark pixel, percent of the mean of its surroundings.
 const DARK_PERCENT: u32 = 88;
-/// Least width and height of a blob that is looked at, px: two for each square of a tag.
+/// Smallest width and height of a candidate blob, px: two for each square of a tag.
 const LEAST: usize = 16;
-/// Least distance of a corner from the other diagonal over that diagonal.
+/// Smallest distance of a corner from the other diagonal, as a share of that diagonal.
 const LEAST_SLIMNESS: f64 = 0.15;
-/// Least and largest number of a blob's pixels over the area of its quadrilateral.
+/// Smallest and largest ratio of a blob's pixel count to the area of its quadrilateral.
 const FILLED: [f64; 2] = [0.3, 1.2];
 
-/// Four corners to within some pixels, clockwise as seen in the picture.
+/// Four corners, accurate to some pixels, clockwise as seen in the picture.
 pub(crate) type Quad = [Pixel; 4];
 
 /// Half the edge of the surroundings of a pixel in a picture, px.
@@ -26,7 +26,7 @@ pub(crate) fn reach(picture: &Picture) -> usize {
     ((height as f64 * AROUND) as usize).max(LEAST / 2)
 }
 
-/// Finds the blobs that are nearly quadrilaterals, where a pixel's surroundings reach so far, px.
+/// Finds the blobs that are nearly quadrilaterals, with a pixel's surroundings of `reach` px on each side.
 pub(crate) fn quads(picture: &Picture, reach: usize) -> Vec<Quad> {
     let [width, height] = picture.size();
     let mut dark = dark(picture, reach);
@@ -69,7 +69,7 @@ pub(crate) fn quads(picture: &Picture, reach: usize) -> Vec<Quad> {
 /// True for each pixel that is darker than its surroundings.
 fn dark(picture: &Picture, reach: usize) -> Vec<bool> {
     let [width, height] = picture.size();
-    // The sum of all pixels above and to the left, of a table that is one wider and higher.
+    // The sums of all pixels above and to the left; the table is one wider and higher than the picture.
     let mut sums = vec![0u32; (width + 1) * (height + 1)];
     for (y, row) in picture.grey().chunks(width).enumerate() {
         let mut sum = 0u32;
@@ -84,7 +84,7 @@ fn dark(picture: &Picture, reach: usize) -> Vec<bool> {
         let (above, below) = (top * (width + 1), bottom * (width + 1));
         for (x, grey) in row.iter().enumerate() {
             let (left, right) = (x.saturating_sub(reach), (x + reach + 1).min(width));
-            // Large sums wrap, their differences are right again.
+            // Large sums wrap around, but their differences are correct.
             let sum = sums[below + right]
                 .wrapping_sub(sums[below + left])
                 .wrapping_sub(sums[above + right])
@@ -130,7 +130,7 @@ fn quad(blob: &[usize], width: usize, height: usize) -> Option<Quad> {
     let a = place(farthest(&from(middle))?.1);
     let (diagonal, c) = farthest(&from(a))?;
     let c = place(c);
-    // Positive to the right of the way from a to c as seen in the picture, where y is down.
+    // Positive to the right of the line from a to c as seen in the picture, where y is down.
     let side = |[x, y]: Pixel| ((c[0] - a[0]) * (y - a[1]) - (c[1] - a[1]) * (x - a[0])) / diagonal;
     let (left, b) = farthest(&|at| -side(at))?;
     let (right, d) = farthest(&side)?;

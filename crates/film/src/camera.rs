@@ -1,17 +1,17 @@
-//! The camera: points of the floor and above it to points of the picture.
+//! The camera: maps points on and above the floor to points of the picture.
 //!
-//! A pinhole with square pixels and its axis through the middle of the picture. Phones straighten
-//! their pictures to some tenths of a percent, and what is left is in the fit's residuals.
+//! The model is a pinhole with square pixels whose axis passes through the middle of the picture. Phones correct the
+//! distortion of their pictures to some tenths of a percent; the rest appears in the fit's residuals.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use crate::homography::Homography;
 use crate::picture::Pixel;
 
-/// Place and direction of a camera: a rotation vector and a shift, mm.
+/// Position and direction of a camera: a rotation vector and a shift, mm.
 pub(crate) type Pose = [f64; 6];
 
-/// A camera at its place.
+/// A camera in its pose.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Camera {
     focal: f64,
@@ -21,7 +21,7 @@ pub(crate) struct Camera {
 }
 
 impl Camera {
-    /// A camera of a focal length (px) for pictures of a size.
+    /// A camera with a focal length (px) for pictures of a size, in a pose.
     pub(crate) fn new(focal: f64, size: [usize; 2], pose: &[f64]) -> Self {
         Self {
             focal,
@@ -31,7 +31,7 @@ impl Camera {
         }
     }
 
-    /// The image of a point: mm, z up from the floor.
+    /// The image of a point: x and y on the floor and z up from it, mm.
     pub(crate) fn project(&self, [x, y]: [f64; 2], z: f64) -> Pixel {
         let seen = self.rotation * Vector3::new(x, y, z) + self.shift;
         [
@@ -40,12 +40,12 @@ impl Camera {
         ]
     }
 
-    /// The direction away from the floor, in the camera's own axes: right, down, ahead.
+    /// The direction away from the floor, in the camera's axes: right, down, ahead.
     pub(crate) fn up(&self) -> Vector3<f64> {
         self.rotation.column(2).into_owned()
     }
 
-    /// A direction of the camera's own axes, in those of the floor.
+    /// Converts a direction from the camera's axes to those of the floor.
     pub(crate) fn on_floor(&self, direction: &Vector3<f64>) -> Vector3<f64> {
         self.rotation.tr_mul(direction)
     }
@@ -63,7 +63,7 @@ fn middle(size: [usize; 2]) -> Pixel {
     size.map(|length| (length as f64 - 1.0) / 2.0)
 }
 
-/// The pose of a camera of this focal length that makes a picture of the floor by this map.
+/// The pose of a camera with this focal length that maps the floor to its picture by this homography.
 pub(crate) fn pose_of(map: &Homography, focal: f64, size: [usize; 2]) -> Option<Pose> {
     let [cx, cy] = middle(size);
     let calibration = Matrix3::new(focal, 0.0, cx, 0.0, focal, cy, 0.0, 0.0, 1.0);
@@ -71,7 +71,7 @@ pub(crate) fn pose_of(map: &Homography, focal: f64, size: [usize; 2]) -> Option<
     let (first, second, third) = (columns.column(0), columns.column(1), columns.column(2));
     let mut scale = 2.0 / (first.norm() + second.norm());
     if third.z < 0.0 {
-        // The floor is in front of the camera.
+        // The floor has to be in front of the camera.
         scale = -scale;
     }
     let x = (first * scale).normalize();

@@ -1,8 +1,8 @@
-//! The beginning and the time of a cycle, by the movement within it.
+//! The beginning and the duration of a cycle, found by the movement within it.
 //!
-//! The movement over a part of a cycle must fit the predicted one. Its mean does not count for that, only its ups
-//! and downs, because the mean is what is to be measured. If it fits much better to cycles that take twice as long or more,
-//! the pace was another one, or the film is in slow motion.
+//! The movement over a part of a cycle must fit the predicted one. Only its variation counts, not its mean, because
+//! the mean is to be measured. If the movement fits much better to cycles that take twice as long or more, the robot
+//! was driven at another pace, or the film is in slow motion.
 
 use crate::gait::{Gait, movement, size};
 use crate::least;
@@ -11,39 +11,40 @@ use crate::trouble::Trouble;
 
 /// Part of a cycle over which the movement is compared.
 const PART: f64 = 0.25;
-/// Least number of movements.
+/// Smallest number of movements.
 const LEAST: usize = 8;
-/// Standard deviation of a cycle's time, as a share: the board has a ceramic resonator.
+/// Standard deviation of a cycle's duration, as a share: the board has a ceramic resonator.
 const SIGMA: f64 = 0.003;
-/// Largest share by which a wrong rate of pictures makes a cycle longer or shorter: 25 in a second taken for 24 or 27, and
-/// the step in which it is looked for; the standard deviation of what is then expected.
+/// Largest share by which a wrong picture rate makes a cycle longer or shorter, such as 25 per second taken for 24 or
+/// 27; the step of the search; and the standard deviation of the duration found by it.
 const OFF: f64 = 0.08;
 const OFF_STEP: f64 = 0.005;
 const OFF_SIGMA: f64 = 0.01;
-/// Number of beginnings that are tried.
+/// Number of cycle beginnings that are tried.
 const BEGINNINGS: usize = 48;
-/// Difference from the predicted movement, as a share of the sum of both squares, from which it is another gait.
+/// Smallest difference from the predicted movement that shows another gait, as a share of the sum of both squares.
 const ANOTHER: f64 = 0.5;
-/// Difference of a cycle's movement from that of the next, as a share of the mean of both squares, from which it changes.
+/// Smallest difference of a cycle's movement from that of the next cycle that shows a change, as a share of the mean
+/// of both squares.
 const CHANGES: f64 = 0.15;
-/// Longer times of a cycle that are tried.
+/// Multiples of a cycle's duration that are tried.
 const LONGER: [u32; 3] = [2, 4, 8];
-/// Share of the difference, and of the movement itself, that a longer time leaves if it is the right one.
+/// Largest share of the difference, and of the movement itself, that another duration may leave to be accepted.
 const MUCH_BETTER: f64 = 0.3;
 
-/// The beginning of cycles and their time, each with its standard error, s.
+/// The beginning of a cycle and the duration of a cycle, each with its standard error, s.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Clock {
     pub start: [f64; 2],
     pub period: [f64; 2],
 }
 
-/// The movements from each picture to a time that is later by a part of a cycle.
+/// The movements from the time of each picture to a time that is later by a part of a cycle.
 #[derive(Debug, Clone)]
 pub(crate) struct Steps {
-    /// The part of a cycle, s.
+    /// The duration of that part, s.
     later: f64,
-    /// Times of the pictures, s, and movements.
+    /// Times of the pictures, s, and movements from there.
     steps: Vec<(f64, [f64; 3])>,
 }
 
@@ -61,21 +62,21 @@ impl Steps {
         }
     }
 
-    /// True if there are too few of them for a fit.
+    /// True if there are too few movements for a fit.
     pub(crate) fn are_few(&self) -> bool {
         self.steps.len() < LEAST
     }
 
-    /// Finds the beginning and the time of a cycle.
+    /// Finds the beginning and the duration of a cycle.
     ///
     /// # Errors
-    /// Fails if the movement is that of another gait or pace.
+    /// Fails if the movement shows another gait or pace.
     pub(crate) fn clock(&self, gait: &Gait) -> Result<Clock, Trouble> {
         let tries = tries(gait);
         let near = |start: f64, period: f64| squares(&self.sways(gait, start, period));
         let (mut least, mut start, mut period) = self.best(gait.period, &tries, near);
         let (mut expected, mut doubt) = (gait.period, SIGMA);
-        // The rate of pictures is off: then the path itself tells the time of a cycle.
+        // The picture rate is off: then only the path itself gives the duration of a cycle.
         let off = self.best(gait.period, &off(gait), near);
         if off.0 < MUCH_BETTER * least {
             (least, start, period) = off;
@@ -101,7 +102,7 @@ impl Steps {
             let mut all = self.sways(gait, at[0], at[1]);
             all.iter_mut().for_each(|value| *value /= sigma);
             all.push((at[1] / expected - 1.0) / doubt);
-            // Keeps the start where nothing within a cycle tells it.
+            // Keeps the start near its first value if nothing within a cycle determines it.
             all.push((at[0] - start) / gait.period);
             all
         };
@@ -117,13 +118,13 @@ impl Steps {
         })
     }
 
-    /// The least difference from the predicted movement, as a share of the movement's squares.
+    /// The smallest difference from the predicted movement, as a share of the movement's squares.
     pub(crate) fn misfit(&self, gait: &Gait) -> f64 {
         let away = |start: f64, period: f64| squares(&self.differences(gait, start, period));
         self.best(gait.period, &tries(gait), away).0 / self.moved()
     }
 
-    /// The least such difference from the movement in cycles that take a multiple of their time, and that multiple.
+    /// The smallest such difference for cycles that take a multiple of their duration, and that multiple.
     pub(crate) fn misfit_of_longer(&self, gait: &Gait) -> (f64, u32) {
         let away = |start: f64, period: f64| squares(&self.differences(gait, start, period));
         let longer = LONGER.map(|times| {
@@ -134,12 +135,12 @@ impl Steps {
         least.unwrap_or((f64::INFINITY, 1))
     }
 
-    /// The sum of the movements' squares.
+    /// The sum of the squares of the movements.
     fn moved(&self) -> f64 {
         self.steps.iter().map(|(_, seen)| size(*seen).powi(2)).sum()
     }
 
-    /// The time at which a cycle begins that moves otherwise than the next one.
+    /// The beginning of the first cycle whose movement differs from that of the next one, s.
     pub(crate) fn change(&self, period: f64) -> Option<f64> {
         let first = self.steps.first()?.0;
         let last = self.steps.last()?.0;
@@ -158,7 +159,7 @@ impl Steps {
         })
     }
 
-    /// The movement from a time between pictures.
+    /// The movement from a time between two pictures, interpolated.
     fn at(&self, seconds: f64) -> Option<[f64; 3]> {
         let after = self.steps.partition_point(|(time, _)| *time < seconds);
         let (b, later) = self.steps.get(after)?;
@@ -167,8 +168,8 @@ impl Steps {
         Some([0, 1, 2].map(|axis| earlier[axis] + share * (later[axis] - earlier[axis])))
     }
 
-    /// The least value of a function of start and time of a cycle with both, over starts within a cycle of
-    /// about `period`.
+    /// The smallest value of a function of a cycle's start and duration, with both. Tries starts within a cycle of
+    /// `period`, and all `periods`.
     fn best(
         &self,
         period: f64,
@@ -181,7 +182,7 @@ impl Steps {
         for i in 0..BEGINNINGS {
             let start = first + period * i as f64 / BEGINNINGS as f64;
             for &other in periods {
-                // The middle of the film keeps its phase while the time of a cycle changes.
+                // The start moves with the duration, so that the phase in the middle of the film stays the same.
                 let start = start + middle * (period - other);
                 let value = value(start, other);
                 if value < best.0 {
@@ -192,7 +193,7 @@ impl Steps {
         best
     }
 
-    /// The movements less those predicted, axis by axis.
+    /// The movements minus the predicted ones, axis by axis.
     fn differences(&self, gait: &Gait, start: f64, period: f64) -> Vec<f64> {
         let difference = |(time, seen): &(f64, [f64; 3])| {
             let phase = (time - start) / period;
@@ -202,7 +203,7 @@ impl Steps {
         self.steps.iter().flat_map(difference).collect()
     }
 
-    /// The differences less their means: those of the ups and downs.
+    /// The differences minus their means: those of the variation alone.
     fn sways(&self, gait: &Gait, start: f64, period: f64) -> Vec<f64> {
         let mut sways = self.differences(gait, start, period);
         for axis in 0..3 {
@@ -218,14 +219,14 @@ impl Steps {
     }
 }
 
-/// The times of a cycle that are tried where the rate of pictures may be off.
+/// The durations of a cycle that are tried if the picture rate may be off.
 fn off(gait: &Gait) -> Vec<f64> {
     let steps = (OFF / OFF_STEP) as i32;
     let time = |step: i32| gait.period * (1.0 + OFF_STEP * f64::from(step));
     (-steps..=steps).map(time).collect()
 }
 
-/// The times of a cycle that are tried.
+/// The durations of a cycle that are tried first.
 fn tries(gait: &Gait) -> [f64; 5] {
     [-2.0, -1.0, 0.0, 1.0, 2.0].map(|sigmas| gait.period * (1.0 + SIGMA * sigmas))
 }

@@ -1,10 +1,10 @@
 //! The cycles of a path.
 //!
-//! A way per cycle means little without the phase at which a cycle begins: the body sways, so
-//! another beginning has another direction ahead. And a clock that is off by half a percent makes every cycle
-//! as much too long. So both are fitted (`clock.rs`). Cycles are compared
-//! at a time at which the robot moves evenly, since pictures are apart, and the result is seen from a cycle's
-//! beginning by the way from there to that time.
+//! A distance per cycle means little without the phase at which a cycle begins: the body sways, so another phase has
+//! another forward direction. And a clock that is off by half a percent makes every cycle too long by as much. So
+//! both are fitted (`clock.rs`). Cycles are compared at a calm phase, at which the robot moves evenly, since pictures
+//! are some time apart. The displacement from the beginning of a cycle to its calm phase then refers the result to
+//! the beginning.
 
 use lizard_contact::{Place, Travel};
 
@@ -13,37 +13,37 @@ use crate::gait::{Gait, MOVED, NEAR, movement, size};
 use crate::path::{self, Seen};
 use crate::trouble::Trouble;
 
-/// Share of the usual movement in the time of a cycle from which the robot counts as walking.
+/// Smallest share of the usual movement per cycle for the robot to count as walking.
 const WALKS: f64 = 0.9;
-/// Share of the usual movement from which a robot walks that does not walk evenly, and for how many cycles it may: as
-/// it starts and as it stops.
+/// Smallest share of the usual movement for the robot to count as walking unevenly, as when it starts or stops;
+/// below, the number of cycles for which it may do so.
 const GOES: f64 = 0.25;
 const UNEVEN: f64 = 1.25;
-/// Part of a cycle that is left out after the start and before the stop.
+/// Part of a cycle that is ignored after the start and before the stop.
 const MARGIN: f64 = 0.15;
 
 /// The cycles of a path.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Cycles {
-    /// Time of a cycle, s, and its standard error.
+    /// Duration of a cycle, s, and its standard error.
     pub period: [f64; 2],
-    /// The predicted movement at the times between cycles, for a whole cycle: mm, mm, deg.
+    /// The predicted movement at the calm phase, scaled to an entire cycle: mm, mm, deg.
     pub pace: [f64; 3],
-    /// The times between cycles, s.
+    /// The times of the calm phases that separate the cycles, s.
     pub ends: Vec<f64>,
     /// The movement of each cycle.
     pub travels: Vec<Travel>,
     /// Time and place of the beginning of each cycle, and of the end of the last one.
     pub begins: Vec<Seen>,
-    /// Standard error of these times, s.
+    /// Standard error of the times in `begins`, s.
     pub begin_error: f64,
 }
 
 /// Finds the cycles of a path.
 ///
 /// # Errors
-/// Fails if the robot does not move, moves otherwise than the gait, changes its movement, or walks for less than two
-/// cycles.
+/// Fails if the robot does not move, moves differently from the gait, changes its movement, or walks for less than
+/// two cycles.
 pub(crate) fn find(path: &[Seen], gait: &Gait) -> Result<Cycles, Trouble> {
     let (walked, [begin, end]) = walked(path, gait)?;
     let steps = Steps::of(walked, gait.period);
@@ -56,14 +56,14 @@ pub(crate) fn find(path: &[Seen], gait: &Gait) -> Result<Cycles, Trouble> {
         return Err(Trouble::Changes { seconds });
     }
     let calm = gait.calm();
-    // The calm times of cycles from before the walk to after it.
+    // The times of the calm phases, from before the walk to after it.
     let first = ((begin - start) / period[0] - calm).ceil() as i64;
     let times = (first..).map(|i| start + (i as f64 + calm) * period[0]);
     let near = NEAR * gait.period;
     let places: Vec<(f64, Place)> = times
         .take_while(|&time| time <= end)
         .map(|time| Some((time, path::at(path, time, near)?)))
-        // The first may have too few pictures before it.
+        // The first cycle may have too few pictures before it.
         .skip_while(Option::is_none)
         .map_while(|place| place)
         .collect();
@@ -90,12 +90,12 @@ pub(crate) fn find(path: &[Seen], gait: &Gait) -> Result<Cycles, Trouble> {
     })
 }
 
-/// The movements of the time in which the robot walks evenly, if they are enough to compare with a gait.
+/// The movements while the robot walks evenly, if they are enough for a comparison with a gait.
 pub(crate) fn steps(path: &[Seen], gait: &Gait) -> Result<Steps, Trouble> {
     Ok(Steps::of(walked(path, gait)?.0, gait.period))
 }
 
-/// The path of the time in which the robot walks evenly, and that time.
+/// The path while the robot walks evenly, and the beginning and end of that time.
 fn walked<'a>(path: &'a [Seen], gait: &Gait) -> Result<(&'a [Seen], [f64; 2]), Trouble> {
     let [begin, end] = walk(path, gait)?;
     let first = path.partition_point(|seen| seen.seconds < begin);
@@ -114,7 +114,7 @@ fn too_short(seconds: f64, gait: &Gait) -> Trouble {
     }
 }
 
-/// The mean way from the beginning of a cycle to its calm phase.
+/// The mean displacement from the beginning of a cycle to its calm phase.
 fn to_calm(
     path: &[Seen],
     places: &[(f64, Place)],
@@ -137,8 +137,8 @@ fn to_calm(
     })
 }
 
-/// The place at the beginning of a cycle, from the picture on either side of it by the predicted movement in between: the
-/// straight line between them is not the path of a gait that begins with a jerk.
+/// The place at the beginning of a cycle: from the pictures before and after it, by the predicted movement in
+/// between. A straight line between them would not be the path of a gait that begins with a jerk.
 fn begin(path: &[Seen], seconds: f64, period: f64, gait: &Gait) -> Option<Place> {
     let after = path.partition_point(|seen| seen.seconds < seconds);
     let (a, b) = (path.get(after.checked_sub(1)?)?, path.get(after)?);
@@ -151,7 +151,7 @@ fn begin(path: &[Seen], seconds: f64, period: f64, gait: &Gait) -> Option<Place>
     Some(path::mix(by(a), by(b), share))
 }
 
-/// The time in which the robot walks evenly.
+/// The beginning and end of the time in which the robot walks evenly.
 fn walk(path: &[Seen], gait: &Gait) -> Result<[f64; 2], Trouble> {
     let moves: Vec<(f64, Travel)> = path
         .iter()
@@ -189,7 +189,7 @@ fn walk(path: &[Seen], gait: &Gait) -> Result<[f64; 2], Trouble> {
         .collect();
     usual.sort_by(f64::total_cmp);
     let usual = usual[usual.len() / 2];
-    // The longest run of times from which on it moves as far as usual.
+    // The longest run of times from which the robot moves as far as usual in a cycle.
     let (mut best, mut run): (Option<[usize; 2]>, Option<usize>) = (None, None);
     for (i, size) in sizes.iter().enumerate() {
         if *size < WALKS * usual {

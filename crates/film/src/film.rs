@@ -1,4 +1,4 @@
-//! A film: its pictures one after another, then the camera and the robot's path.
+//! A film: reads its pictures one after another, then finds the camera and the robot's path.
 
 use crate::frame::Frame;
 use crate::gait::Gait;
@@ -11,37 +11,37 @@ use crate::tags::{self, Tag};
 use crate::trouble::Trouble;
 use crate::watched::{Sight, Watched};
 
-/// Distance of a floor tag's corner from its usual place that shows a moved camera, px.
+/// Smallest distance of a floor tag's corner from its usual place that shows a moved camera, px.
 const MOVED: f64 = 1.0;
-/// Share of the pictures that need not show what is asked for.
+/// Largest share of the pictures that may lack a needed tag.
 const LOST: f64 = 0.1;
-/// Number of pictures whose deck's tag helps to find the camera.
+/// Number of pictures in which the deck tag is used to find the camera.
 const SAMPLES: usize = 8;
-/// Distance beyond the floor tags' middles in which places are still told, mm.
+/// Distance beyond the floor tags, measured from their common middle, up to which places are valid, mm.
 const BEYOND: f64 = 200.0;
-/// Largest difference of the deck tag's height from that by its size, mm.
+/// Largest difference between the deck tag's given height and the height found by its size, mm.
 const HEIGHT: f64 = 12.0;
 
-/// Pictures from one that is searched whole to the next, so that a second copy of a tag is noticed when it comes later.
+/// Pictures from one full search to the next, so that a second copy of a tag is noticed even if it appears later.
 const WHOLE: usize = 16;
 
 /// Measures of the sheet and the robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Setup {
-    /// Length of a printed mm, mm: the ruler's over [`crate::sheet::RULER`].
+    /// True length of a printed mm, mm: the measured length of the ruler divided by [`crate::sheet::RULER`].
     pub scale: f64,
     /// Height of the deck's tag above the floor, mm.
     pub height: f64,
 }
 
-/// A film, of which the tags are kept.
+/// A film, of which only the tags are stored.
 #[derive(Debug, Clone, Default)]
 pub struct Film {
     size: [usize; 2],
     frames: Vec<Frame>,
     /// The tags of the last picture.
     last: Tags,
-    /// Pictures since one was searched whole.
+    /// Pictures since the last full search.
     since_whole: usize,
 }
 
@@ -49,8 +49,9 @@ pub struct Film {
 type Tags = [Option<[Pixel; 4]>; CODES.len()];
 
 impl Film {
-    /// Finds the tags of a picture, which is not kept: if all were seen in the last one, near their places there, which takes
-    /// a fraction of the time, but for each sixteenth picture. If an id is seen twice in one that is searched whole, both are returned.
+    /// Finds the tags of a picture, which is not stored. If the last picture showed all tags, it searches only near
+    /// their places there, which takes a fraction of the time; but every sixteenth picture gets a full search. If a
+    /// full search finds an id twice, both tags are returned.
     pub fn look(&mut self, picture: &Picture) -> Vec<Tag> {
         self.since_whole = (self.since_whole + 1) % WHOLE;
         let last = self.last.iter().enumerate();
@@ -73,8 +74,8 @@ impl Film {
     /// Reads the next picture, taken at this time, and returns the corners of its tags by their ids.
     ///
     /// # Errors
-    /// Fails if it has another size than the first one, is not later than the one before, or shows a
-    /// tag twice.
+    /// Fails if the picture differs in size from the first one, is not later than the previous one, or shows a tag
+    /// twice.
     pub fn add(&mut self, seconds: f64, picture: &Picture) -> Result<Tags, Trouble> {
         let number = self.frames.len() + 1;
         match self.frames.last() {
@@ -93,7 +94,7 @@ impl Film {
         Ok(tags)
     }
 
-    /// Measures a gait that is walked in the whole of the film.
+    /// Measures a gait that the robot walks during the film.
     ///
     /// # Errors
     /// Fails if the film does not show what is needed.
@@ -104,7 +105,7 @@ impl Film {
     /// Finds the camera and the robot's path.
     ///
     /// # Errors
-    /// Fails if the tags do not tell them, or not as they should.
+    /// Fails if the tags do not determine them, or contradict the setup.
     pub fn watch(&self, setup: Setup) -> Result<Watched, Trouble> {
         self.check_tags()?;
         let moved = self.is_moved();
@@ -152,7 +153,7 @@ impl Film {
         Ok(Watched::new(path, sight, scene, frames, setup.height))
     }
 
-    /// Checks that every tag is seen often enough.
+    /// Checks that every tag is visible often enough.
     fn check_tags(&self) -> Result<(), Trouble> {
         let pictures = self.frames.len();
         let seen = |id: usize| {
@@ -177,8 +178,8 @@ impl Film {
         Ok(())
     }
 
-    /// The corners of each floor tag where they are most often: a tag that is partly covered for a while has
-    /// others.
+    /// The usual corners of each floor tag: means of the middle half of all pictures, since a tag that is partly
+    /// covered for a while seems to be elsewhere.
     fn usual(&self) -> FloorCorners {
         std::array::from_fn(|id| {
             let seen: Vec<_> = self
@@ -192,7 +193,7 @@ impl Film {
         })
     }
 
-    /// True if the camera moved: then two tags are elsewhere, and not one that is partly covered.
+    /// True if the camera moved: then two or more tags are elsewhere, while a partly covered tag is only one.
     fn is_moved(&self) -> bool {
         let usual = self.usual();
         let is_elsewhere = |tag: &[Pixel; 4], usual: &[Pixel; 4]| {
@@ -210,7 +211,7 @@ impl Film {
         self.frames.iter().filter(moved).count() > self.frames.len() / 50
     }
 
-    /// Pictures by which to find the scene.
+    /// Selects the pictures that are used to find the scene.
     fn views(&self, moved: bool) -> Result<Vec<View>, Trouble> {
         let whole: Vec<(FloorCorners, [Pixel; 4])> = self
             .frames
@@ -247,7 +248,7 @@ impl Film {
         Ok(spread(whole.len()).map(view).collect())
     }
 
-    /// Checks that the robot is where the floor's tags tell places.
+    /// Checks that the robot stays where the floor tags give valid places.
     fn check_place(&self, scene: &Scene, path: &[Seen]) -> Result<(), Trouble> {
         let tags = scene.floor_tags();
         let middle = [0, 1].map(|i| tags.iter().map(|tag| tag[i]).sum::<f64>() / FLOOR_TAGS as f64);
@@ -264,7 +265,7 @@ impl Film {
     }
 }
 
-/// The mean of the middle half of values, which is not empty.
+/// The mean of the middle half of the values; there must be at least one.
 fn middle(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     let quarter = values.len() / 4;

@@ -1,4 +1,4 @@
-//! The tags of a picture, and where the robot is by them.
+//! The tags of a picture, and the place of the robot that they show.
 
 use lizard_contact::Place;
 
@@ -12,18 +12,18 @@ use crate::sheet::{CODES, DECK_TAG};
 pub(crate) struct Frame {
     /// Time of the picture, s.
     pub seconds: f64,
-    /// The corners of each tag that is seen, by its id.
+    /// The corners of each visible tag, by its id.
     pub tags: [Option<[Pixel; 4]>; CODES.len()],
 }
 
 impl Frame {
-    /// The floor's tags, if all are seen.
+    /// The corners of the floor tags, if all are visible.
     pub(crate) fn floor(&self) -> Option<FloorCorners> {
         let [a, b, c, d, _] = self.tags;
         Some([a?, b?, c?, d?])
     }
 
-    /// The camera of the picture: the scene's, unless it moved.
+    /// The camera of the picture: that of the scene unless the camera moved.
     pub(crate) fn camera(&self, scene: &Scene, moved: bool) -> Option<Camera> {
         match moved {
             false => Some(scene.camera()),
@@ -31,7 +31,7 @@ impl Frame {
         }
     }
 
-    /// The robot's place.
+    /// The robot's place, if the needed tags are visible.
     pub(crate) fn place(&self, scene: &Scene, moved: bool) -> Option<Place> {
         let camera = self.camera(scene, moved)?;
         scene.place(&camera, self.tags[DECK_TAG].as_ref()?)

@@ -1,33 +1,33 @@
-//! A gait as it is predicted, with which a path is compared.
+//! A predicted gait, with which a path is compared.
 
 use lizard_contact::{Place, Travel};
 
 use crate::path;
 
-/// Weight of a turn, mm for each rad: the robot's legs are as far from its middle.
+/// Weight of a turn, mm per rad: the distance of the robot's legs from its middle.
 const ARM: f64 = 60.0;
-/// Least movement that counts as going somewhere, mm.
+/// Smallest movement that counts as such, mm.
 pub(crate) const MOVED: f64 = 3.0;
-/// Half of the time whose pictures tell the place at the end of a cycle, in cycles.
+/// Half of the time whose pictures determine the place at the end of a cycle, in cycles.
 pub(crate) const NEAR: f64 = 0.08;
 
-/// A gait as it is predicted.
+/// A predicted gait.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Gait {
-    /// Time of a cycle at the pace that was driven, s.
+    /// Duration of a cycle at the pace that was driven, s.
     pub period: f64,
-    /// The path of a cycle, evenly in time, seen from its start; the last place is its end.
+    /// The path of a cycle, at even intervals, relative to its start; the last place is its end.
     pub path: Vec<Place>,
 }
 
 impl Gait {
-    /// The distance of a cycle's end from its start over the time of a cycle, mm/s; a turn counts as the way of the legs.
+    /// The displacement of a cycle divided by its duration, mm/s; a turn counts as the distance that the legs move.
     pub fn speed(&self) -> f64 {
         let way = self.path[self.path.len() - 1].travel();
         size(movement(way)) / self.period
     }
 
-    /// The place at a phase, seen from the start of cycle 0.
+    /// The place at a phase, relative to the start of cycle 0.
     pub(crate) fn at(&self, phase: f64) -> Place {
         let count = self.path.len() - 1;
         let within = phase.rem_euclid(1.0) * count as f64;
@@ -40,8 +40,7 @@ impl Gait {
         place
     }
 
-    /// The phase around which the predicted movement changes least: there a place between
-    /// pictures is known best.
+    /// The phase around which the predicted movement changes least: a place between pictures is most accurate there.
     pub(crate) fn calm(&self) -> f64 {
         let count = 50;
         let roughness = |i: usize| {
@@ -53,14 +52,14 @@ impl Gait {
             let changes = parts
                 .windows(2)
                 .map(|pair| size([0, 1, 2].map(|axis| pair[1][axis] - pair[0][axis])));
-            // Half as much counts a movement itself, because the clock is not known exactly.
+            // A movement itself counts half, because the clock is not known exactly.
             changes.sum::<f64>() + 0.5 * parts.iter().map(|part| size(*part)).sum::<f64>()
         };
         let least = (0..count).min_by(|&a, &b| roughness(a).total_cmp(&roughness(b)));
         least.unwrap_or(0) as f64 / count as f64
     }
 
-    /// The movement at a phase, for a whole cycle: mm, mm, deg.
+    /// The movement around a phase, scaled to an entire cycle: mm, mm, deg.
     pub(crate) fn pace(&self, phase: f64) -> [f64; 3] {
         let [forward, left, turn] = self.step(phase - NEAR / 2.0, phase + NEAR / 2.0);
         [forward, left, (turn / ARM).to_degrees()].map(|part| part / NEAR)
@@ -73,7 +72,7 @@ impl Gait {
     }
 }
 
-/// A movement in mm: ahead, left, turn on the arm.
+/// A movement in mm: forward, left, and the turn times `ARM`.
 pub(crate) fn movement(travel: Travel) -> [f64; 3] {
     [travel.forward, travel.left, ARM * travel.turn.to_radians()]
 }

@@ -4,22 +4,21 @@ use nalgebra::{DMatrix, DVector};
 
 /// Largest number of steps.
 const STEPS: usize = 60;
-/// Relative gain of a step below which the fit has ended.
+/// Relative gain of a step below which the fit ends.
 const ENOUGH: f64 = 1e-10;
 
-/// The parameters with the least sum of squares.
+/// The parameters with the smallest sum of squares.
 #[derive(Debug, Clone)]
 pub(crate) struct Fit {
     /// The parameters.
     pub at: Vec<f64>,
-    /// Their covariance, if the residuals have a variance of one.
+    /// The covariance of the parameters if the residuals have a variance of one.
     pub covariance: DMatrix<f64>,
-    /// Sum of the squares.
+    /// The sum of the squared residuals.
     pub squares: f64,
 }
 
-/// Fits parameters to residuals of any number; `None` if a parameter has no influence or the residuals
-/// are no numbers.
+/// Fits parameters to any number of residuals; `None` if a parameter has no influence or a result is not finite.
 pub(crate) fn fit(start: &[f64], residuals: impl Fn(&[f64]) -> Vec<f64>) -> Option<Fit> {
     let sum = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>();
     let mut at = start.to_vec();
@@ -62,7 +61,7 @@ pub(crate) fn fit(start: &[f64], residuals: impl Fn(&[f64]) -> Vec<f64>) -> Opti
     })
 }
 
-/// The derivatives of the residuals, by differences to both sides.
+/// The derivatives of the residuals, by central differences.
 fn jacobian(at: &[f64], count: usize, residuals: &impl Fn(&[f64]) -> Vec<f64>) -> DMatrix<f64> {
     let mut jacobian = DMatrix::zeros(count, at.len());
     for (column, value) in at.iter().enumerate() {

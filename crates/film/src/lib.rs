@@ -1,14 +1,14 @@
-//! The robot measured in a film: how far it goes in a cycle, and how well that is known.
+//! Measuring the robot in a film: how far it moves in a cycle, and how accurate the result is.
 //!
-//! A camera looks down on the robot from anywhere. Tags on the floor tell where the camera is, and
-//! a tag on the deck, whose height is known, tells where the robot is ([`sheet`] has the sheet of tags).
-//! [`Film::add`] reads the tags of each picture. [`Film::watch`] finds the camera (`scene.rs`) and the path
-//! (`path.rs`), [`Watched::walks`] what is between its rests (`walks.rs`), [`Watched::likeness`] the gait that a walk shows
-//! (`likeness.rs`), and [`Watched::measure`] its cycles (`cycles.rs`, `clock.rs`), their mean with its error (`mean.rs`) and the path within
-//! them (`within.rs`). The crate reads no file and prints nothing.
+//! A camera looks down on the robot from any place. Tags on the floor show where the camera is, and a tag on the
+//! deck, whose height is known, shows where the robot is ([`sheet`] has the sheet of tags). [`Film::add`] reads the
+//! tags of each picture. [`Film::watch`] finds the camera (`scene.rs`) and the path (`path.rs`). [`Watched::walks`]
+//! finds the walks between the robot's rests (`walks.rs`), [`Watched::likeness`] the gait of a walk (`likeness.rs`).
+//! [`Watched::measure`] finds the cycles of a walk (`cycles.rs`, `clock.rs`), their mean with its error (`mean.rs`)
+//! and the path within them (`within.rs`). The crate reads no file and prints nothing.
 //!
 //! # When not to use it
-//! For one robot in one plane. For places in space, or many markers, take AprilTag's own library.
+//! It measures one robot in one plane. For places in space, or many markers, use AprilTag's own library.
 //!
 //! # Units
 //! mm, s, and px from the middle of a picture's top left pixel; a heading is in radians, a turn in degrees, both

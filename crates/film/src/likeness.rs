@@ -1,28 +1,28 @@
-//! The gait that a walk shows, if it is clear.
+//! The gait that a walk shows, if it is unambiguous.
 //!
-//! The movements over quarters of a cycle are compared with those of each gait, at the beginning of the cycle and at the
-//! clock at which they fit best. The gait that fits best is not yet it: a robot differs from every prediction. So the next best has to
-//! fit much worse, by the test that statistics has for two variances.
+//! The movements over quarters of a cycle are compared with those of each gait, with the beginning and the duration
+//! of a cycle that fit best. The best gait is not accepted at once, since a robot differs from every prediction. The
+//! second best has to fit much worse, by the statistical test for two variances.
 
 use crate::cycles;
 use crate::gait::Gait;
 use crate::path::Seen;
 use crate::trouble::Trouble;
 
-/// Largest misfit of the gait that is taken: of a robot that goes half as far as predicted.
+/// Largest misfit of an accepted gait: that of a robot that moves half as far as predicted.
 const FITS: f64 = 0.25;
-/// Least misfit of any other gait over that of the best: Fisher's F for a chance of 1 %, where either variance is known
-/// from four quarters of a cycle on three axes.
+/// Smallest ratio of any other gait's misfit to that of the best: Fisher's F for a probability of 1 %, if both
+/// variances come from four quarters of a cycle on three axes.
 const CLEAR: f64 = 4.16;
 
-/// The gait that a walk is like, by its number.
+/// The gait that a walk resembles, by its index.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Likeness {
-    /// This gait, clearly.
+    /// This gait, unambiguously.
     One(usize),
-    /// This gait best and that one nearly as well.
+    /// The first gait best, and the second one nearly as well.
     Two(usize, usize),
-    /// No gait, and why not the one that fits best.
+    /// No gait, and the reason against the one that fits best.
     None(Trouble),
 }
 
@@ -46,7 +46,7 @@ pub(crate) fn of(path: &[Seen], gaits: &[Gait]) -> Likeness {
     fits.sort_by(|a, b| a.0.total_cmp(&b.0));
     let best = fits.first().map_or(f64::INFINITY, |fit| fit.0);
     match fits[..] {
-        // A slow gait may go as far in a second as another one that is not slow.
+        // A slow gait may move as far in a second as another gait at its usual pace.
         _ if slow.0 < best.min(FITS) => Likeness::None(Trouble::AnotherPace { times: slow.1 }),
         [(_, number), (next, rival), ..] if best < FITS && next < CLEAR * best => {
             Likeness::Two(number, rival)

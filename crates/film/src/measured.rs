@@ -7,29 +7,29 @@ use crate::mean::{self, Mean};
 use crate::walk::{Walk, parts};
 use crate::within::{self, Point};
 
-/// A gait as it is measured.
+/// A measured gait.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
-    /// Way ahead of a cycle, seen from its start, mm.
+    /// Distance per cycle in the forward direction at its start, mm.
     pub forward: Mean,
-    /// Drift to the left, mm.
+    /// Drift per cycle to the left, mm.
     pub left: Mean,
-    /// Turn, deg, counter-clockwise positive.
+    /// Turn per cycle, deg, counter-clockwise positive.
     pub turn: Mean,
-    /// Time of a cycle, s, and its standard error.
+    /// Duration of a cycle, s, and its standard error.
     pub period: [f64; 2],
     /// The movement of each cycle.
     pub cycles: Vec<Travel>,
-    /// The times between the cycles of each walk, s.
+    /// The times that separate the cycles of each walk, s.
     pub ends: Vec<f64>,
-    /// The mean path within a cycle beside the predicted one.
+    /// The mean path within a cycle, with the predicted one.
     pub within: Vec<Point>,
-    /// The walks of which it is the mean.
+    /// The walks from which the means are computed.
     walks: Vec<Walk>,
 }
 
 impl Measured {
-    /// The mean over walks.
+    /// Computes the means over walks.
     pub(crate) fn of(walks: Vec<Walk>, gait: &Gait) -> Self {
         let mean = |i: usize| {
             let own = |walk: &Walk| (parts(&walk.cycles.travels)[i].clone(), walk.common()[i]);
@@ -61,7 +61,7 @@ impl Measured {
         }
     }
 
-    /// The mean over the walks of several results of a gait, in one film or in several.
+    /// Computes the means over the walks of several results of a gait, from one film or several.
     pub fn together(results: &[Self], gait: &Gait) -> Self {
         let walks = results.iter().flat_map(|result| result.walks.clone());
         Self::of(walks.collect(), gait)

@@ -1,8 +1,8 @@
-//! The steps that a servo in the jig is ordered to make, one home for who sends them and who measures them.
+//! The steps that a servo in the jig is ordered to make; both the sender and the measurement use this list.
 //!
-//! A servo shows its rate only if its pulse jumps faster than it turns. A move to a pose is too smooth for that, but a
-//! direction that is reversed (`dir`) takes the pulse to the other side of neutral at the slew limit.
-//! Then the same angle is approached from both sides, and at the end small steps grow until the servo notices them.
+//! A servo shows its rate only if its pulse width jumps faster than it turns. A move to a pose is too smooth for
+//! that, but reversing the direction (`dir`) takes the pulse to the other side of neutral at the slew limit. Then the
+//! same angle is approached from both sides. At the end, small steps grow until the servo reacts.
 
 use std::ops::Range;
 
@@ -12,8 +12,8 @@ pub const PAUSE: f64 = 1.0;
 const SIDE: f64 = 30.0;
 /// Number of large steps.
 const FLIPS: usize = 8;
-/// The visits: deg from neutral, and true if the direction is reversed. In steps of 15 deg they go from one side to the other and
-/// back, twice. The direction changes at neutral, where that moves nothing.
+/// The visits: deg from neutral, and true if the direction is reversed. They go from one side to the other and back
+/// twice, in steps of 15 deg. The direction changes at neutral, where the change moves nothing.
 #[rustfmt::skip]
 const VISITS: [(f64, bool); 19] = [
     (15.0, false), (0.0, false),
@@ -22,7 +22,7 @@ const VISITS: [(f64, bool); 19] = [
     (0.0, true), (15.0, true), (30.0, true), (15.0, true), (0.0, true),
     (0.0, false), (15.0, false),
 ];
-/// The small steps, deg, there and back from the last visit.
+/// The small steps, deg, from the last visit and back.
 const SWINGS: [f64; 10] = [0.2, 0.4, 0.6, 0.8, 1.0, 1.25, 1.6, 2.0, 2.5, 3.0];
 
 /// An order to the servo.
@@ -35,7 +35,7 @@ pub struct Order {
 }
 
 impl Order {
-    /// The angle that the pulse stands for by robot.toml, deg from neutral.
+    /// The angle of the pulse by robot.toml's direction, deg from neutral.
     pub fn asked(&self) -> f64 {
         match self.is_reversed {
             true => -self.sweep,
@@ -44,7 +44,7 @@ impl Order {
     }
 }
 
-/// All orders; the poses are counter-clockwise from neutral, or clockwise if `way` is -1.
+/// Makes all orders; the poses are counter-clockwise from neutral, or clockwise if `way` is -1.
 pub fn orders(way: f64) -> Vec<Order> {
     let order = |sweep: f64, is_reversed| Order {
         sweep: way * sweep,
@@ -60,17 +60,17 @@ pub fn orders(way: f64) -> Vec<Order> {
     all
 }
 
-/// The orders of the large steps.
+/// The indices of the orders for the large steps.
 pub(crate) fn flips() -> Range<usize> {
     2..2 + FLIPS
 }
 
-/// The orders of the visits.
+/// The indices of the orders for the visits.
 pub(crate) fn visits() -> Range<usize> {
     flips().end..flips().end + VISITS.len()
 }
 
-/// The orders of the small steps.
+/// The indices of the orders for the small steps.
 pub(crate) fn swings() -> Range<usize> {
     let begin = visits().end;
     begin..begin + 2 * SWINGS.len()

@@ -1,10 +1,10 @@
-//! The measured path: places at the times of pictures, and between them.
+//! The measured path: the robot's places at the times of pictures, and between them.
 
 use lizard_contact::{Place, Travel};
 
 use crate::least;
 
-/// Least number of pictures for the place at a time between them.
+/// Smallest number of pictures to find a place between them.
 const LEAST: usize = 4;
 
 /// The robot's place in a picture.
@@ -16,22 +16,22 @@ pub struct Seen {
     pub place: Place,
 }
 
-/// A place that is given as seen from another one, on the floor.
+/// Converts a place relative to `from` into a place on the floor.
 pub(crate) fn compose(from: Place, seen: Place) -> Place {
     from.after(seen.travel())
 }
 
-/// The place from which a place is seen as `place` sees its origin.
+/// The origin as seen from `place`.
 pub(crate) fn inverse(place: Place) -> Place {
     of_travel(Place::START.seen_from(place))
 }
 
-/// A movement as a place that is seen from its start.
+/// Converts a movement into its end, relative to its start.
 pub(crate) fn of_travel(travel: Travel) -> Place {
     Place::START.after(travel)
 }
 
-/// The place on the straight way between two places.
+/// The place at a share of the straight line between two places.
 pub(crate) fn mix(a: Place, b: Place, share: f64) -> Place {
     Place {
         forward: a.forward + share * (b.forward - a.forward),
@@ -40,7 +40,7 @@ pub(crate) fn mix(a: Place, b: Place, share: f64) -> Place {
     }
 }
 
-/// Makes the headings continuous, so that two turns are not none.
+/// Makes the headings continuous, so that two full turns differ from none.
 pub(crate) fn unwind(seen: &mut [Seen]) {
     for i in 1..seen.len() {
         let before = seen[i - 1].place.heading;
@@ -50,7 +50,7 @@ pub(crate) fn unwind(seen: &mut [Seen]) {
     }
 }
 
-/// The place at a time between two pictures.
+/// The place at a time between two pictures, interpolated.
 pub(crate) fn between(path: &[Seen], seconds: f64) -> Option<Place> {
     let after = path.partition_point(|seen| seen.seconds < seconds);
     let b = path.get(after)?;
@@ -64,8 +64,8 @@ pub(crate) fn between(path: &[Seen], seconds: f64) -> Option<Place> {
     (share >= 0.0 && seconds >= a.seconds.min(b.seconds)).then(|| mix(a.place, b.place, share))
 }
 
-/// The place at a time, by a parabola through the pictures within `half` seconds of it; `None` without
-/// pictures before and after.
+/// The place at a time, by a parabola through the pictures within `half` seconds of it; `None` if there are no
+/// pictures before or after.
 pub(crate) fn at(path: &[Seen], seconds: f64, half: f64) -> Option<Place> {
     let mut begin = path.partition_point(|seen| seen.seconds < seconds - half);
     let mut end = path.partition_point(|seen| seen.seconds <= seconds + half);
@@ -80,7 +80,7 @@ pub(crate) fn at(path: &[Seen], seconds: f64, half: f64) -> Option<Place> {
         return None;
     }
     let middle = |part: fn(&Place) -> f64| {
-        // The curve through the first of them is near enough to begin with: the model is linear.
+        // A constant curve through the first picture is a sufficient start, because the model is linear.
         let model = |at: &[f64]| -> Vec<f64> {
             let residual = |seen: &Seen| {
                 let t = (seen.seconds - seconds) / half;

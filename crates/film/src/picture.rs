@@ -12,7 +12,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Makes a picture of its rows; `None` if `grey` has another length than `width * height`.
+    /// Makes a picture from its rows; `None` if the length of `grey` is not `width * height`.
     pub fn new(width: usize, height: usize, grey: Vec<u8>) -> Option<Self> {
         let fits = width.checked_mul(height) == Some(grey.len()) && !grey.is_empty();
         fits.then_some(Self {
@@ -22,7 +22,7 @@ impl Picture {
         })
     }
 
-    /// Makes a grey picture of a colourful one, four bytes for each pixel: red, green, blue, and one that does not count.
+    /// Makes a grey picture from a coloured one with four bytes per pixel: red, green, blue, and one that is ignored.
     pub fn of_colours(width: usize, height: usize, pixels: &[u8]) -> Option<Self> {
         let (pixels, rest) = pixels.as_chunks::<4>();
         let grey = pixels
@@ -32,7 +32,8 @@ impl Picture {
             .then(|| Self::new(width, height, grey.collect()))?
     }
 
-    /// The part of the picture between two corners, the second of which does not belong to it; `None` if it is empty or not inside.
+    /// The part of the picture between two corners, of which the second is exclusive; `None` if it is empty or
+    /// extends outside.
     pub(crate) fn part(
         &self,
         [left, top]: [usize; 2],
@@ -52,12 +53,12 @@ impl Picture {
         [self.width, self.height]
     }
 
-    /// The rows from the top.
+    /// The grey values, row by row from the top.
     pub fn grey(&self) -> &[u8] {
         &self.grey
     }
 
-    /// The grey at a point between pixels; beyond the edge that of the edge.
+    /// The grey at a point between pixels; beyond the edge, that of the edge.
     pub fn at(&self, [x, y]: Pixel) -> f64 {
         let x = x.clamp(0.0, (self.width - 1) as f64);
         let y = y.clamp(0.0, (self.height - 1) as f64);

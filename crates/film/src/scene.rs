@@ -1,9 +1,9 @@
-//! The scene: the camera's focal length, the places of strips and camera, from the tags' corners.
+//! The scene: the camera's focal length, and the places of strips and camera, found from the tags' corners.
 //!
-//! The first strip is the floor's frame. The other lies where it lies: three unknowns. Light and
-//! ink spread, so every black square is a little larger or smaller than it should be, by the same
-//! length: one more unknown, which the distance of a strip's tags tells from the scale. The size of
-//! the deck's tag, whose height is known, tells focal length from distance where the tilt does not.
+//! The first strip is the frame of the floor. The other strip may be anywhere: three unknowns. Light and ink spread,
+//! so every black square is larger or smaller than designed, by the same small length: one more unknown, which the
+//! distance between a strip's tags separates from the scale. If the tilt does not separate focal length from
+//! distance, the size of the deck tag does, since its height is known.
 
 use lizard_contact::Place;
 use nalgebra::DMatrix;
@@ -17,49 +17,48 @@ use crate::trouble::Trouble;
 
 /// Number of parameters that all views share: focal length, spread, the second strip's place.
 const SHARED: usize = 5;
-/// Error of a corner of the floor's tags, px: of its mean over a film, whose grid of pixels
-/// stays the same.
+/// Error of a corner of a floor tag, px, in the mean over a film: the pixel grid is the same in all pictures.
 const FLOOR_SIGMA: f64 = 0.03;
-/// Error of a corner of the deck's tag in one picture, px.
+/// Error of a corner of the deck tag in one picture, px.
 const DECK_SIGMA: f64 = 0.08;
-/// Focal lengths over the picture's width with which the fit starts.
+/// Ratios of the focal length to the picture's width from which the fit starts.
 const STARTS: [f64; 3] = [0.8, 1.1, 1.6];
-/// Largest mean error of a corner, px.
+/// Largest root-mean-square error of a corner, px.
 const LARGEST_ERROR: f64 = 1.5;
 /// Largest spread of a tag's edge, mm.
 const LARGEST_SPREAD: f64 = 0.6;
 
-/// The corners of each floor tag in a picture or in the mean of some.
+/// The corners of each floor tag, in one picture or as means over several.
 pub(crate) type FloorCorners = [[Pixel; 4]; FLOOR_TAGS];
 
-/// Pictures from one place of the camera.
+/// Pictures taken from one place of the camera.
 pub(crate) struct View {
-    /// The floor's tags.
+    /// The corners of the floor tags.
     pub floor: FloorCorners,
-    /// The deck's tag, wherever it was.
+    /// The corners of the deck tag at each of its places.
     pub decks: Vec<[Pixel; 4]>,
 }
 
-/// Known measures of the scene.
+/// The known measures of the scene.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Measures {
-    /// Length of a printed mm, mm.
+    /// True length of a printed mm, mm.
     pub scale: f64,
-    /// Height of the deck's tag above the floor, mm.
+    /// Height of the deck tag above the floor, mm.
     pub height: f64,
     /// Width and height of the pictures, px.
     pub size: [usize; 2],
 }
 
-/// What the views share, and the first camera.
+/// The parameters that the views share, and the camera of the first view.
 #[derive(Debug, Clone)]
 pub(crate) struct Scene {
     measures: Measures,
     /// The shared parameters, then the first view's pose.
     parameters: Vec<f64>,
-    /// Their covariance.
+    /// The covariance of these parameters.
     pub covariance: DMatrix<f64>,
-    /// Mean error of a floor tag's corner, px.
+    /// Root-mean-square error of a floor tag's corner, px.
     pub error: f64,
 }
 
@@ -67,7 +66,7 @@ impl Scene {
     /// Fits the scene to views.
     ///
     /// # Errors
-    /// Fails if the tags cannot lie as the sheet has them.
+    /// Fails if the tags are not arranged as on the sheet.
     pub(crate) fn of(views: &[View], measures: Measures) -> Result<Self, Trouble> {
         let width = measures.size[0] as f64;
         let fits = STARTS
@@ -99,7 +98,7 @@ impl Scene {
         })
     }
 
-    /// The scene with a parameter changed.
+    /// The scene with one parameter changed.
     pub(crate) fn moved(&self, parameter: usize, by: f64) -> Self {
         let mut moved = self.clone();
         moved.parameters[parameter] += by;
@@ -116,7 +115,7 @@ impl Scene {
         self.camera_at(&self.parameters[SHARED..])
     }
 
-    /// A camera at another place.
+    /// A camera of the scene in another pose.
     pub(crate) fn camera_at(&self, pose: &[f64]) -> Camera {
         Camera::new(self.focal(), self.measures.size, pose)
     }
@@ -130,14 +129,14 @@ impl Scene {
         };
         let fit = least::fit(&start, model)?;
         let error = FLOOR_SIGMA * (fit.squares / (4 * FLOOR_TAGS) as f64).sqrt();
-        // A tag that is partly covered has wrong corners, and makes a wrong camera.
+        // A partly covered tag has wrong corners, and would give a wrong camera.
         if error > LARGEST_ERROR {
             return None;
         }
         fit.at.try_into().ok()
     }
 
-    /// The place of the deck's tag, and its height if it is taken as unknown, mm.
+    /// The place of the robot by its deck tag.
     pub(crate) fn place(&self, camera: &Camera, corners: &[Pixel; 4]) -> Option<Place> {
         let start = deck_start(camera, corners, self.measures.height)?;
         let model = |at: &[f64]| {
@@ -158,7 +157,7 @@ impl Scene {
         })
     }
 
-    /// The height of the deck's tag by its size, mm.
+    /// The height of the deck tag by its size, mm.
     pub(crate) fn height(&self, camera: &Camera, corners: &[Pixel; 4]) -> Option<f64> {
         let [a, b, c] = deck_start(camera, corners, self.measures.height)?;
         let model = |at: &[f64]| {
@@ -167,7 +166,7 @@ impl Scene {
         Some(least::fit(&[a, b, c, self.measures.height], model)?.at[3])
     }
 
-    /// The middles of the floor's tags on the floor, mm.
+    /// The middles of the floor tags on the floor, mm.
     pub(crate) fn floor_tags(&self) -> [[f64; 2]; FLOOR_TAGS] {
         std::array::from_fn(|id| {
             on_floor(
@@ -180,7 +179,7 @@ impl Scene {
     }
 }
 
-/// A point of a strip, mm as designed, on the floor.
+/// Converts a point of a strip, in designed mm, to a place on the floor, mm.
 fn on_floor(shared: &[f64], scale: f64, id: usize, point: [f64; 2]) -> [f64; 2] {
     let point = point.map(|part| scale * part);
     if sheet::strip_of(id) == 0 {
@@ -194,12 +193,12 @@ fn on_floor(shared: &[f64], scale: f64, id: usize, point: [f64; 2]) -> [f64; 2] 
     strip.on_floor(point)
 }
 
-/// The corners of a tag from its middle as they look, mm as designed.
+/// The corners of a tag as they appear, relative to its middle, in designed mm.
 fn seen_corners(shared: &[f64], scale: f64, id: usize) -> [[f64; 2]; 4] {
     sheet::corners(sheet::edge(id) + 2.0 * shared[1] / scale)
 }
 
-/// The errors of the floor's corners, over their sigma.
+/// The errors of the floor tags' corners, divided by their sigma.
 fn floor_residuals(
     shared: &[f64],
     camera: &Camera,
@@ -218,7 +217,7 @@ fn floor_residuals(
     residuals
 }
 
-/// The errors of the corners of a deck's tag at a place and a height, over their sigma.
+/// The errors of the deck tag's corners at a place and a height, divided by their sigma.
 fn deck_residuals(
     shared: &[f64],
     camera: &Camera,
@@ -236,7 +235,7 @@ fn deck_residuals(
     let pairs = points.iter().zip(corners);
     pairs
         .flat_map(|(&[x, y], seen)| {
-            // The tag's upper edge is ahead, and so its left one is on the left.
+            // The upper edge of the tag is ahead, so its left edge is on the left.
             let floor = place.on_floor([measures.scale * y, -measures.scale * x]);
             let image = camera.project(floor, height);
             [0, 1].map(|i| (image[i] - seen[i]) / DECK_SIGMA)
@@ -244,7 +243,7 @@ fn deck_residuals(
         .collect()
 }
 
-/// A first place of the deck's tag: where the rays through its corners meet its height.
+/// A first estimate of the deck tag's place: where the rays through its corners reach its height.
 fn deck_start(camera: &Camera, corners: &[Pixel; 4], height: f64) -> Option<[f64; 3]> {
     let square = [
         [-100.0, -100.0],
@@ -260,12 +259,12 @@ fn deck_start(camera: &Camera, corners: &[Pixel; 4], height: f64) -> Option<[f64
     Some([mean(0), mean(1), ahead(1).atan2(ahead(0))])
 }
 
-/// A first pose of the camera, by the first strip.
+/// A first estimate of the camera's pose, by the first strip.
 fn start_pose(floor: &FloorCorners, measures: &Measures, focal: f64) -> Option<Pose> {
     pose_of(&strip_map(floor, measures, 0)?, focal, measures.size)
 }
 
-/// The map from a strip's own frame to the picture.
+/// The homography from a strip's own frame to the picture.
 fn strip_map(floor: &FloorCorners, measures: &Measures, strip: usize) -> Option<Homography> {
     let ids = strip * TAGS_ON_STRIP..(strip + 1) * TAGS_ON_STRIP;
     let mut points = Vec::new();
@@ -277,7 +276,7 @@ fn strip_map(floor: &FloorCorners, measures: &Measures, strip: usize) -> Option<
     Homography::of_points(&points, &floor[ids].concat())
 }
 
-/// The errors of all corners of all views; without the decks if `decks` is false.
+/// The errors of all corners of all views; without those of the deck tags if `decks` is false.
 fn residuals(at: &[f64], views: &[View], measures: &Measures, decks: bool) -> Vec<f64> {
     let (shared, mut rest) = at.split_at(SHARED);
     let mut all = Vec::new();
@@ -306,7 +305,7 @@ fn residuals(at: &[f64], views: &[View], measures: &Measures, decks: bool) -> Ve
     all
 }
 
-/// Fits all parameters, from this focal length.
+/// Fits all parameters, starting with this focal length.
 fn fit(views: &[View], measures: &Measures, focal: f64) -> Option<Fit> {
     let first = views.first()?;
     let to_floor = strip_map(&first.floor, measures, 0)?.inverse()?;

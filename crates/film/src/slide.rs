@@ -1,9 +1,10 @@
-//! The friction of pads on a board that is tilted until the robot slides.
+//! The friction of the robot's pads, measured on a board that is tilted until the robot slides.
 //!
-//! The camera stands still, and the board with the strips is lifted at one end. In the first second it is level, so the
-//! normal of the board as the camera sees it then is the vertical, and every later picture shows the tilt by the camera's
-//! pose. A robot that begins to slide shows its static friction, the tangent of the tilt. How it speeds up then shows the friction
-//! of sliding pads, which is the one of the contact model: its acceleration is `g (sin tilt - friction cos tilt)`.
+//! The camera stands still, and the board with the strips is lifted at one end. In the first second the board is
+//! level, so its normal in the camera's frame is the vertical. In every later picture, the camera's pose relative to
+//! the board gives the tilt. A robot that begins to slide shows its static friction, the tangent of the tilt. Its
+//! acceleration then shows the friction of sliding pads, which the contact model uses: it is
+//! `g (sin tilt - friction cos tilt)`.
 
 use lizard_contact::GRAVITY;
 use nalgebra::Vector3;
@@ -14,19 +15,19 @@ use crate::mean::widening;
 use crate::path::Seen;
 use crate::watched::Watched;
 
-/// Time at the beginning in which the board lies level, s.
+/// Time at the beginning during which the board is level, s.
 const LEVEL: f64 = 1.0;
-/// Largest change of the tilt meanwhile, deg.
+/// Largest change of the tilt during that time, deg.
 const MOVED: f64 = 1.0;
-/// Standard error of "level", and of a tilt by the camera, deg.
+/// Standard error of "level", and below, of a tilt found by the camera, deg.
 const LEVEL_SIGMA: f64 = 0.3;
 const TILT_SIGMA: f64 = 0.2;
-/// Slides, mm: the least one that counts, and the part of it by which friction is found.
+/// Smallest slide that counts, mm; below, the part of a slide from which friction is found, mm.
 const SLID: f64 = 15.0;
 const PART: [f64; 2] = [1.0, 60.0];
-/// Least number of pictures of a slide.
+/// Smallest number of pictures of a slide.
 const LEAST: usize = 6;
-/// Largest angle between the slide and the way down, and between the robot and the slide, deg.
+/// Largest angle between the slide and the downhill direction, and between the robot and that direction, deg.
 const ASIDE: f64 = 30.0;
 /// Largest rate at which the board is lifted, deg/s.
 const LIFTED: f64 = 15.0;
@@ -41,7 +42,7 @@ pub enum SlideTrouble {
         "the board tilts by {angle:.1} deg in the first second: begin the film with the board level and at rest"
     )]
     NotAtRest {
-        /// Change of its tilt, deg.
+        /// Change of the board's tilt, deg.
         angle: f64,
     },
     /// The robot does not slide.
@@ -55,12 +56,12 @@ pub enum SlideTrouble {
         /// Largest tilt, deg.
         tilt: f64,
     },
-    /// The robot does not slide down.
+    /// The robot does not slide downhill.
     #[error(
         "the robot slides {aside:.0} deg beside the way down: was it pushed, or the camera moved instead of the board?"
     )]
     NotDown {
-        /// Angle between its slide and the way down, deg.
+        /// Angle between the slide and the downhill direction, deg.
         aside: f64,
     },
     /// The robot lies across the slope.
@@ -68,13 +69,13 @@ pub enum SlideTrouble {
         "the robot's head shows {aside:.0} deg away from the way down: put its head straight uphill or downhill"
     )]
     Across {
-        /// Angle between its head and the way down, deg.
+        /// Angle between the robot's forward direction and the downhill direction, deg.
         aside: f64,
     },
-    /// The board is lifted fast.
+    /// The board is lifted too fast.
     #[error("the board is lifted at {rate:.0} deg/s as the robot begins to slide: lift it slowly")]
     Fast {
-        /// Rate, deg/s.
+        /// Rate of the tilt, deg/s.
         rate: f64,
     },
     /// Too few pictures of the slide.
@@ -90,17 +91,18 @@ pub enum SlideTrouble {
 pub struct Slide {
     /// True if the robot slides head first.
     pub is_ahead: bool,
-    /// Time at which it begins, s.
+    /// Time at which the slide begins, s.
     pub begin: f64,
     /// Tilt at that time, deg.
     pub tilt: Figure,
     /// Coefficient of static friction.
     pub resting: Figure,
-    /// Coefficient of friction while it slides.
+    /// Coefficient of friction while the robot slides.
     pub sliding: Figure,
 }
 
-/// A picture: its time, the tilt in rad, the way down on the board, and the robot's place on it, mm.
+/// The values of one picture: time in s, tilt in rad, downhill direction on the board, the robot's place on it in mm,
+/// and its heading in rad.
 struct Moment {
     seconds: f64,
     tilt: f64,
@@ -168,7 +170,7 @@ impl Slide {
                 / length
         };
         let tilts = smooth(&moments);
-        // The end of the slide: it is far enough, or something stops it.
+        // The slide ends when it is long enough or when something stops it.
         let mut to = slid;
         let pace = |i: usize| {
             (along(&moments[i]) - along(&moments[i - 1]))
@@ -219,7 +221,7 @@ impl Slide {
     }
 }
 
-/// Checks that the robot slides down, with head or tail first.
+/// Checks that the robot slides downhill, with its head or its tail in front.
 fn check_ways(moment: &Moment, way: [f64; 2]) -> Result<(), SlideTrouble> {
     let beside = aside(way[1].atan2(way[0]), moment.down);
     if beside > ASIDE {
@@ -232,18 +234,18 @@ fn check_ways(moment: &Moment, way: [f64; 2]) -> Result<(), SlideTrouble> {
     }
 }
 
-/// The angle between a heading in rad and a direction, deg, without its sign.
+/// The unsigned angle between a heading in rad and a direction, deg.
 fn aside(heading: f64, [x, y]: [f64; 2]) -> f64 {
     let (sin, cos) = (heading - y.atan2(x)).sin_cos();
     sin.atan2(cos).to_degrees().abs()
 }
 
-/// The mean place.
+/// The mean place of the robot.
 fn mean(moments: &[Moment]) -> [f64; 2] {
     [0, 1].map(|i| moments.iter().map(|moment| moment.at[i]).sum::<f64>() / moments.len() as f64)
 }
 
-/// The tilt in each picture by a straight line through those around it, rad.
+/// The tilt in each picture, rad, by a straight line fitted to the pictures around it.
 fn smooth(moments: &[Moment]) -> Vec<f64> {
     let at = |seconds: f64| moments.partition_point(|moment| moment.seconds < seconds);
     let one = |moment: &Moment| {
@@ -265,7 +267,7 @@ fn smooth(moments: &[Moment]) -> Vec<f64> {
     moments.iter().map(one).collect()
 }
 
-/// The friction of a slide: times in s, tilts in rad, places in mm.
+/// The coefficient of friction in a slide: each point is a time in s, a tilt in rad and a place in mm.
 fn sliding(points: &[[f64; 3]]) -> Result<Figure, SlideTrouble> {
     let few = SlideTrouble::FewPictures {
         pictures: points.len(),
@@ -273,7 +275,8 @@ fn sliding(points: &[[f64; 3]]) -> Result<Figure, SlideTrouble> {
     if points.len() < LEAST {
         return Err(few);
     }
-    // Ways without friction, and those that a friction of 1 takes away, by the trapezoids of both speeds.
+    // Distances without friction, and distances that a friction of 1 would take away; both are integrated by
+    // trapezoids of the speed.
     let mut ways = vec![[0.0; 2]];
     let mut speeds = [0.0; 2];
     for pair in points.windows(2) {
@@ -305,13 +308,14 @@ fn sliding(points: &[[f64; 3]]) -> Result<Figure, SlideTrouble> {
     })
 }
 
-/// The time at which a slide begins with its standard error, s: by its acceleration from the first picture in which it moved.
+/// The time at which a slide begins, with its standard error, s: found by its acceleration, backward from the first
+/// picture that shows a movement.
 fn begin(points: &[[f64; 3]], friction: f64, before: f64) -> (f64, f64) {
     let [seconds, tilt, slid] = points[0];
     let acceleration = 1000.0 * GRAVITY * (tilt.sin() - friction * tilt.cos());
     let back = (2.0 * slid / acceleration.max(1.0)).sqrt();
     let gap = seconds - before;
     let begin = (seconds - back).max(before - gap - 1.0);
-    // Where the acceleration grows from zero, the way back is longer.
+    // If the acceleration grows from zero, the true beginning is earlier, so half of `back` counts as error.
     (begin, (gap / 2.0).hypot(back / 2.0))
 }

@@ -1,34 +1,34 @@
-//! The rate of a servo in large steps, by pictures of the turning horn.
+//! The rate of a servo in large steps, found by pictures of the turning horn.
 //!
-//! At the full torque a motor gathers speed toward a steady rate with the time constant of its rotor. The steady rate
-//! is what a data sheet means; a straight line through the middle of a step of 60 deg would show 2 % less. A film with few
-//! pictures in a second tells rate and time constant badly apart, so the constant is expected near that of
-//! robot.toml, within a factor of two, and the error of the rate covers that.
+//! At full torque a motor accelerates toward a steady rate with the time constant of its rotor. Data sheets give the
+//! steady rate; a straight line through the middle of a step of 60 deg would show 2 % less. A film with few pictures
+//! per second hardly separates rate and time constant. So the constant is expected within a factor of two of that in
+//! robot.toml, and the error of the rate includes this uncertainty.
 
 use crate::figure::Figure;
 use crate::least;
 use crate::mean::widening;
 
-/// Least share of a step from which pictures count, and the largest: then the servo begins to brake.
+/// Range of the shares of a step in which pictures count; at the upper end the servo begins to brake.
 const PARTS: [f64; 2] = [0.02, 0.85];
-/// Standard deviation of the logarithm of the time constant, as expected.
+/// Expected standard deviation of the logarithm of the time constant.
 const SPIN_UP_SIGMA: f64 = 0.7;
-/// Standard error of that logarithm below which the film tells it.
+/// Largest standard error of that logarithm with which the film determines the time constant.
 const TOLD: f64 = 0.25;
-/// Standard error of a time constant by the simple motor, as a share.
+/// Standard error of a time constant because the motor model is simple, as a share.
 const MOTOR: f64 = 0.02;
-/// Error of an angle in one picture to begin with, deg; the residuals tell the true one.
+/// First estimate of the error of an angle in one picture, deg; the residuals give the true one.
 const SIGMA: f64 = 0.3;
-/// Least number of steps with two pictures or more, and of pictures beyond the first of each step.
+/// Smallest number of steps with two pictures or more; below, that of pictures, without the first of each step.
 const LEAST_STEPS: usize = 2;
 const LEAST_PICTURES: usize = 6;
 
-/// A large step: times in s, and angles since its beginning, deg.
+/// A large step: times in s, and angles in deg from the start of the step.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Step(Vec<(f64, f64)>);
 
 impl Step {
-    /// The pictures of a step over `way` deg that count.
+    /// Selects the pictures that count, for a step of `way` deg.
     pub(crate) fn new(pictures: impl Iterator<Item = (f64, f64)>, way: f64) -> Self {
         let [low, high] = PARTS.map(|part| part * way.abs());
         let turned = pictures.map(|(time, angle)| (time, angle * way.signum()));
@@ -37,18 +37,18 @@ impl Step {
     }
 }
 
-/// The rates of groups of steps, deg/s, with their covariance, and the common time constant, s.
+/// The rates of groups of steps, deg/s, with their covariance, and their common time constant, s.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Rates {
-    /// The rates.
+    /// The rate of each group.
     pub rates: Vec<f64>,
     covariance: Vec<Vec<f64>>,
-    /// The time constant, if the film tells it.
+    /// The time constant, if the film determines it.
     pub spin_up: Option<Figure>,
 }
 
 impl Rates {
-    /// Fits groups of steps, each with a rate of its own; `None` if there are too few pictures.
+    /// Fits groups of steps, each group with its own rate; `None` if there are too few pictures.
     pub(crate) fn of(groups: &[&[Step]], spin_up: f64) -> Option<Self> {
         let mut start = Vec::new();
         for group in groups {
@@ -108,7 +108,7 @@ impl Rates {
         })
     }
 
-    /// A figure of the rates with its error, by its derivative for each rate.
+    /// A value derived from the rates, with its error by propagation; `slopes` are its derivatives by each rate.
     pub(crate) fn figure(&self, value: f64, slopes: &[f64]) -> Figure {
         let pairs = slopes.iter().zip(&self.covariance).flat_map(|(a, row)| {
             row.iter()
@@ -128,7 +128,7 @@ fn pace(step: &Step) -> f64 {
     (b - a) / (to - from)
 }
 
-/// The angle that a motor has turned after some time, deg.
+/// The angle that a motor has turned after a time, deg.
 fn turned(rate: f64, constant: f64, seconds: f64) -> f64 {
     if seconds <= 0.0 {
         return 0.0;

@@ -1,8 +1,8 @@
-//! The tags of the sheet in a picture.
+//! Reading the tags of the sheet in a picture.
 //!
-//! [`read`] finds dark quadrilaterals, refines their edges and reads their codes. Of the 587 codes of the family
-//! only the sheet's are known here. They differ in eleven squares or more, however a tag is turned,
-//! so a few squares that cannot be read do no harm.
+//! [`read`] finds dark quadrilaterals, refines their edges and reads their codes. Of the family's 587 codes, only
+//! those on the sheet are known here. They differ in eleven squares or more in every orientation, so a few misread
+//! squares do no harm.
 
 use crate::blobs::{self, Quad};
 use crate::edges::{self, Square};
@@ -10,27 +10,29 @@ use crate::homography::Homography;
 use crate::picture::{Picture, Pixel};
 use crate::sheet::{CODES, SQUARES, is_white};
 
-/// Largest number of a tag's squares that are read wrong.
+/// Largest number of misread squares of a tag.
 const LARGEST_ERROR: usize = 3;
 
-/// Movement of a tag from one picture to the next to which it is looked for near its last place, over its size.
+/// Largest movement of a tag from one picture to the next, as a share of its size, for which it is searched near its
+/// last place.
 const MOVES: f64 = 0.3;
 
 /// A tag in a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tag {
-    /// Its id on the sheet.
+    /// The id on the sheet.
     pub id: usize,
-    /// Its corners: top left, top right, bottom right, bottom left, as it is printed.
+    /// The corners: top left, top right, bottom right, bottom left, as printed.
     pub corners: [Pixel; 4],
 }
 
-/// Finds the tags of the sheet. If an id is seen twice, both are returned.
+/// Finds the tags of the sheet. If an id appears twice, both tags are returned.
 pub fn read(picture: &Picture) -> Vec<Tag> {
     tags(picture, blobs::quads(picture, blobs::reach(picture)))
 }
 
-/// Finds the tag of an id near its last place: the very tag that [`read`] finds if it moved by less than [`MOVES`] of its size.
+/// Finds the tag of an id near its last place. The result is the same as that of [`read`] if the tag moved by less
+/// than [`MOVES`] of its size.
 pub(crate) fn near(picture: &Picture, id: usize, last: &[Pixel; 4]) -> Option<Tag> {
     let reach = blobs::reach(picture);
     let size = picture.size();
@@ -38,7 +40,7 @@ pub(crate) fn near(picture: &Picture, id: usize, last: &[Pixel; 4]) -> Option<Ta
     for i in 0..2 {
         let [least, most] = [f64::min, f64::max].map(|of| last.iter().map(|at| at[i]).reduce(of));
         let (least, most) = (least?, most?);
-        // Of the pixels of the tag the surroundings belong to the part, too.
+        // The part has to include the surroundings of the tag's pixels, too.
         let around = (most - least) * MOVES + reach as f64 + 2.0;
         low[i] = (least - around).max(0.0) as usize;
         high[i] = size[i].min((most + around).max(0.0) as usize);
@@ -49,7 +51,7 @@ pub(crate) fn near(picture: &Picture, id: usize, last: &[Pixel; 4]) -> Option<Ta
     tags.find(|tag| tag.id == id)
 }
 
-/// The tags among quadrilaterals of a picture.
+/// Reads the tags among quadrilaterals of a picture.
 fn tags(picture: &Picture, quads: impl IntoIterator<Item = Quad>) -> Vec<Tag> {
     let quads = quads.into_iter();
     quads
@@ -58,7 +60,7 @@ fn tags(picture: &Picture, quads: impl IntoIterator<Item = Quad>) -> Vec<Tag> {
         .collect()
 }
 
-/// Reads the code of a square, from each of its corners.
+/// Reads the code of a square, starting at each of its corners in turn.
 fn decode(picture: &Picture, square: &Square) -> Option<Tag> {
     (0..4).find_map(|turn| {
         let corners = std::array::from_fn(|i| square.corners[(i + turn) % 4]);

@@ -8,19 +8,19 @@ pub enum Trouble {
     /// The film has no pictures.
     #[error("the film has no pictures")]
     NoPictures,
-    /// The pictures have several sizes.
+    /// The pictures differ in size.
     #[error("picture {number} has another size than the first one")]
     Size {
         /// Number of the picture, from 1.
         number: usize,
     },
-    /// The times do not rise.
+    /// The times of the pictures do not increase.
     #[error("picture {number} is not later than the one before")]
     Times {
         /// Number of the picture, from 1.
         number: usize,
     },
-    /// A tag is seen twice.
+    /// A tag appears twice in a picture.
     #[error(
         "picture {number} shows tag {id} twice: which of them counts is not guessed; take the other away"
     )]
@@ -36,7 +36,7 @@ pub enum Trouble {
          pictures are dark, and not mirrored"
     )]
     NoTag,
-    /// A tag of the floor is never seen.
+    /// A floor tag is never visible.
     #[error(
         "tag {id} of the floor is not seen whole in any picture: each of the {FLOOR_TAGS} tags of the two strips has to be, \
          with its white edge"
@@ -45,64 +45,64 @@ pub enum Trouble {
         /// Id of the tag.
         id: usize,
     },
-    /// The card's tag is not seen.
+    /// The deck tag is visible too rarely.
     #[error(
         "the tag on the robot's deck, or on the horn, is in {seen} of {pictures} pictures only; nine of ten have to show it"
     )]
     DeckTag {
-        /// Number of the pictures that show it.
+        /// Number of pictures that show it.
         seen: usize,
         /// Number of pictures.
         pictures: usize,
     },
-    /// The camera moved, and not all of the floor's tags are seen meanwhile.
+    /// The camera moved, and not all floor tags stayed visible.
     #[error(
         "the camera moved, and {pictures} pictures do not show all tags of the floor: put it on a \
          tripod, or keep all tags in sight"
     )]
     CameraMoved {
-        /// Number of the pictures without all tags.
+        /// Number of pictures without all floor tags.
         pictures: usize,
     },
-    /// No camera sees the tags as they are.
+    /// No camera could see the floor tags in this arrangement.
     #[error("no camera sees the floor's tags like that: are they flat on the floor?")]
     NoCamera,
-    /// The tags do not lie as on the sheet.
+    /// The floor tags are not arranged as on the sheet.
     #[error(
         "the floor's tags do not lie as on the sheet, by {error:.1} px: both tags of a strip have to be on one \
          piece of paper, flat on the floor"
     )]
     NotThisSheet {
-        /// Mean error of a corner, px.
+        /// Root-mean-square error of a corner, px.
         error: f64,
     },
-    /// The tags have another size for their distance.
+    /// The size of the floor tags does not fit their distance.
     #[error(
         "the floor's tags are {edge:.1} mm wide for their distance and not {FLOOR_EDGE}: were they cut apart, or \
          printed with another scale in each direction?"
     )]
     TagSize {
-        /// Their width for their distance, mm.
+        /// Edge of a tag as computed from their distance, mm.
         edge: f64,
     },
-    /// The card's tag is not at its height.
+    /// The deck tag is not at its given height.
     #[error(
         "the tag on the deck, or on the horn, is {found:.0} mm above the strips by its size, not {height:.0} mm: measure it and give \
          --height, and print card and strips with one scale"
     )]
     Height {
-        /// Its height by its size, mm.
+        /// Height found by the size of the tag, mm.
         found: f64,
-        /// Its height as given, mm.
+        /// Given height, mm.
         height: f64,
     },
-    /// The robot leaves the sheet.
+    /// The robot leaves the area in which the floor tags give valid places.
     #[error(
         "the robot, or the horn, is {distance:.0} mm away from the middle of the strips {seconds:.1} s after the beginning, \
          farther than the tags tell places: move the strips, or film fewer cycles"
     )]
     OutOfSheet {
-        /// Its distance, mm.
+        /// Distance from the middle of the strips, mm.
         distance: f64,
         /// Time since the first picture, s.
         seconds: f64,
@@ -110,9 +110,9 @@ pub enum Trouble {
     /// The robot did not move.
     #[error("the robot did not move: {way:.1} mm and {turn:.1} deg in the time of a cycle at most")]
     NotMoved {
-        /// Largest distance in the time of a cycle, mm.
+        /// Largest distance within the duration of a cycle, mm.
         way: f64,
-        /// Largest turn in the time of a cycle, deg.
+        /// Largest turn within the duration of a cycle, deg.
         turn: f64,
     },
     /// The film has too few cycles.
@@ -123,10 +123,10 @@ pub enum Trouble {
     TooShort {
         /// Number of cycles.
         cycles: f64,
-        /// Time of a cycle, s.
+        /// Duration of a cycle, s.
         period: f64,
     },
-    /// The cycles take a multiple of their time.
+    /// The cycles take a multiple of their predicted duration.
     #[error(
         "the cycles take {times} times as long as they should: give the pace with --speed (a weak supply halves it), \
          or, for a film in slow motion, the rate at which it was taken with --fps"
@@ -135,16 +135,16 @@ pub enum Trouble {
         /// The multiple.
         times: u32,
     },
-    /// The path is not that of the gait.
+    /// The path differs from that of the gait.
     #[error(
         "the path is not that of this gait in cycles of {period:.2} s: was it another gait, another pace, several gaits \
          without a rest between them, or does the arrow of the deck's card not show to the head?"
     )]
     NotThisGait {
-        /// Time of a cycle, s.
+        /// Duration of a cycle, s.
         period: f64,
     },
-    /// The path changes from one cycle to the next.
+    /// The movement changes from one cycle to the next.
     #[error(
         "from one cycle to the next, {seconds:.1} s after the beginning, the robot moves otherwise: between two gaits \
          it has to rest"
@@ -153,7 +153,7 @@ pub enum Trouble {
         /// Time since the first picture, s.
         seconds: f64,
     },
-    /// There is no gait to compare with.
+    /// There is no gait that moves the robot, to compare with.
     #[error("there is no gait that goes anywhere to compare with")]
     NoGait,
 }

@@ -1,7 +1,7 @@
-//! A servo in a film: how far it turns for its pulses, how fast, and what it does not notice.
+//! A servo measured in a film: how far it turns for its pulses, how fast, and which small steps it ignores.
 //!
-//! The servo got the steps of [`crate::orders`], evenly in time, but nobody knows when in the film. They are found
-//! by the angles at which the horn rests, which must follow the orders in a line.
+//! The servo gets the steps of [`crate::orders`] at even intervals, but their time in the film is unknown. It is
+//! found by the angles at which the horn rests, which must depend linearly on the orders.
 
 use crate::figure::Figure;
 use crate::least;
@@ -11,40 +11,40 @@ use crate::path::Seen;
 use crate::spin::{Rates, Step};
 use crate::turns_trouble::TurnsTrouble;
 
-/// Part of the time of an order in which the horn rests.
+/// Part of an order's time in which the horn rests.
 const REST: [f64; 2] = [0.45, 0.92];
-/// Distance of the beginnings that are tried, s.
+/// Interval of the beginnings that are tried, s.
 const TRIES: f64 = 0.02;
-/// Share of the orders whose rest must be seen.
+/// Smallest share of the orders whose rest must be visible.
 const SEEN: f64 = 0.9;
 /// Time from an order to half of its large step, s.
 const HALF_WAY: f64 = 0.1;
-/// Least turn of a servo that moved, deg.
+/// Smallest turn that shows a moving servo, deg.
 const TURNED: f64 = 5.0;
 /// Largest share of the rests' variance that the orders do not explain.
 const UNEXPLAINED: f64 = 0.02;
-/// Other times of an order that are tried, as multiples.
+/// Other durations of an order that are tried, as multiples.
 const MULTIPLES: [f64; 5] = [0.25, 0.5, 2.0, 4.0, 8.0];
-/// Largest share of the slew limit at which a servo turns at its own rate.
+/// Largest share of the slew limit up to which a rate is the servo's own.
 const OWN_RATE: f64 = 0.8;
-/// Standard error of the camera, as a share of an angle.
+/// Standard error of an angle by the camera, as a share.
 const CAMERA: f64 = 0.002;
-/// Standard error of a rate by the simple motor, as a share: a real one does not follow it exactly.
+/// Standard error of a rate because the motor model is simple, as a share: a real motor does not follow it exactly.
 const MOTOR: f64 = 0.003;
-/// Least angle that counts as a movement, deg, and as multiple of its standard error.
+/// Smallest angle that counts as a movement, deg; below, the same as a multiple of its standard error.
 const MOVED: f64 = 0.05;
 const MOVED_SIGMAS: f64 = 3.0;
-/// Largest movement of a small step that tells the dead band, deg: after a larger one the servo overshoots.
+/// Largest movement of a small step that is used for the dead band, deg: after a larger one the servo overshoots.
 const SMALL: f64 = 1.6;
-/// Standard error of a dead band in which the servo does not always stop at its edge, deg.
+/// Standard error of the dead band's width, deg: the servo does not always stop at its edge.
 const DEAD_BAND_ERROR: f64 = 0.06;
-/// Standard error of the load's torque, as a share: half a millimetre of 20.
+/// Standard error of the load's torque, as a share: half a millimetre in a lever of 20.
 const LOAD: f64 = 0.025;
 
-/// Known figures of the jig.
+/// The known values of the jig.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Jig {
-    /// Side of neutral to which the poses go: 1 counter-clockwise, -1 clockwise.
+    /// Side of neutral on which the poses are: 1 for counter-clockwise, -1 for clockwise.
     pub way: f64,
     /// Slew limit of the orders, deg/s.
     pub slew: f64,
@@ -52,45 +52,45 @@ pub struct Jig {
     pub spin_up: f64,
 }
 
-/// What small steps show.
+/// The dead band that small steps show.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DeadBand {
-    /// Its width, deg by robot.toml; `None` if no step was large enough.
+    /// Width, in robot.toml's deg; `None` if no step was large enough.
     pub width: Option<Figure>,
-    /// Largest small step that moved nothing, deg by robot.toml; 0 if all did.
+    /// Largest small step that moved nothing, in robot.toml's deg; 0 if all steps moved the servo.
     pub still: f64,
 }
 
 /// A measured servo.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Turns {
-    /// Angle that it turns for each deg by robot.toml; negative if it turns the other way.
+    /// Angle that the servo turns per deg of robot.toml; negative if it turns the other way.
     pub gain: Figure,
-    /// Distance of the angles at which it stops as it comes from either side, deg by robot.toml.
+    /// Difference of the angles at which the servo stops after approaching from either side, in robot.toml's deg.
     pub hysteresis: Figure,
-    /// What it does not notice.
+    /// The dead band.
     pub dead_band: DeadBand,
-    /// Rate, deg/s, of both ways together.
+    /// Mean of the rates in both directions, deg/s.
     pub rate: Figure,
-    /// Rate counter-clockwise and clockwise, deg/s.
+    /// Rates counter-clockwise and clockwise, deg/s.
     pub ways: [Figure; 2],
     /// Time constant of the rotor, s; `None` if the film has too few pictures for it.
     pub spin_up: Option<Figure>,
     /// Time of the first order, s.
     pub begin: f64,
-    /// Pictures in a second.
+    /// Pictures per second.
     pub pictures: f64,
-    /// The large steps counter-clockwise and clockwise.
+    /// The large steps, counter-clockwise and clockwise.
     steps: [Vec<Step>; 2],
     /// Expected time constant of the rotor, s.
     expected: f64,
 }
 
 impl Turns {
-    /// Measures the path of the card on the horn.
+    /// Measures a servo by the path of the card on its horn.
     ///
     /// # Errors
-    /// Fails if the horn does not turn as it was ordered, or is seen too rarely.
+    /// Fails if the horn does not turn as ordered, or is visible too rarely.
     pub fn of(path: &[Seen], jig: Jig) -> Result<Self, TurnsTrouble> {
         let turns = Path::new(path);
         let orders = orders::orders(jig.way);
@@ -125,11 +125,11 @@ impl Turns {
         })
     }
 
-    /// The torque at a stall, in the unit of the load's torque: the rate falls with the torque in a line. The load
-    /// pulls one way only, which is the one that it makes slower.
+    /// The torque at a stall, in the unit of `torque`: the rate falls linearly with the torque. The load pulls in one
+    /// direction only; it is the direction in which the servo becomes slower.
     ///
     /// # Errors
-    /// Fails if the load does not make the servo slower.
+    /// Fails if the load does not slow the servo down.
     pub fn stall(&self, loaded: &Self, torque: f64) -> Result<Figure, TurnsTrouble> {
         let few = TurnsTrouble::FewPictures {
             rate: self.pictures.min(loaded.pictures),
@@ -147,7 +147,7 @@ impl Turns {
                 error: 100.0 * loss.error,
             });
         }
-        // Only a load makes one way slower than the other.
+        // Only a load makes one direction slower than the other.
         let uneven = |turns: &Self| (turns.ways[0].value - turns.ways[1].value).abs();
         if uneven(self) > uneven(loaded) {
             return Err(TurnsTrouble::Swapped);
@@ -160,7 +160,7 @@ impl Turns {
     }
 }
 
-/// A figure with the error of the camera.
+/// Adds the error of the camera to a figure.
 fn of_camera(figure: Figure) -> Figure {
     Figure {
         error: figure.error.hypot(CAMERA * figure.value),
@@ -168,7 +168,7 @@ fn of_camera(figure: Figure) -> Figure {
     }
 }
 
-/// A rate with the errors of the camera and of the motor's model.
+/// Adds the errors of the camera and of the motor model to a rate.
 fn of_motor(rate: Figure) -> Figure {
     let Figure { value, error } = of_camera(rate);
     Figure {
@@ -177,7 +177,7 @@ fn of_motor(rate: Figure) -> Figure {
     }
 }
 
-/// Gain and hysteresis by the visits: moves of one length, after which the horn stops alike.
+/// Gain and hysteresis, found by the visits: all are moves of one length, after which the horn stops in the same way.
 fn line(orders: &[Order], rests: &[Option<f64>]) -> Option<[Figure; 2]> {
     let seen: Vec<(f64, f64, f64)> = orders::visits()
         .filter_map(|i| {
@@ -206,11 +206,11 @@ fn line(orders: &[Order], rests: &[Option<f64>]) -> Option<[Figure; 2]> {
     Some([gain, hysteresis])
 }
 
-/// The horn's angles in a film, and their sums.
+/// The horn's angles in a film, and their running sums.
 struct Path {
     /// Times, s, and angles, deg.
     turns: Vec<(f64, f64)>,
-    /// Sums of the angles before each picture.
+    /// Sum of the angles of all pictures before each picture.
     sums: Vec<f64>,
 }
 
@@ -225,7 +225,7 @@ impl Path {
         Self { turns, sums }
     }
 
-    /// Pictures in a second, where none is missing.
+    /// Pictures per second, without gaps from missing pictures.
     fn rate(&self) -> f64 {
         let gaps = self.turns.windows(2).map(|pair| pair[1].0 - pair[0].0);
         let mut gaps: Vec<f64> = gaps.collect();
@@ -233,7 +233,7 @@ impl Path {
         gaps.get(gaps.len() / 2).map_or(0.0, |gap| 1.0 / gap)
     }
 
-    /// The numbers of the pictures in a time.
+    /// The indices of the pictures in a time interval.
     fn within(&self, from: f64, to: f64) -> std::ops::Range<usize> {
         let at = |time: f64| self.turns.partition_point(|(seen, _)| *seen < time);
         at(from)..at(to)
@@ -252,7 +252,7 @@ impl Path {
         (!seen.is_empty()).then(|| sum / seen.len() as f64)
     }
 
-    /// Share of the rests' variance that the orders do not explain, if they began at this time.
+    /// The share of the rests' variance that the orders do not explain, if the first order is at `begin`.
     fn unexplained(&self, orders: &[Order], begin: f64, pause: f64) -> Option<f64> {
         let pair = |i: usize| Some((orders[i].asked(), self.rest(begin, pause, i)?));
         let pairs: Vec<(f64, f64)> = (0..orders.len()).filter_map(pair).collect();
@@ -270,7 +270,7 @@ impl Path {
         Some(1.0 - sums[1] * sums[1] / (sums[0] * sums[2]).max(1e-9))
     }
 
-    /// The beginning that leaves least unexplained, with that share.
+    /// The beginning with the smallest unexplained share, and that share.
     fn best(&self, orders: &[Order], pause: f64) -> Option<(f64, f64)> {
         let (first, last) = (self.turns.first()?.0, self.turns.last()?.0);
         let end = last - pause * (orders.len() as f64 - 1.0 + REST[0]);
@@ -311,7 +311,7 @@ impl Path {
         })
     }
 
-    /// The time of the first order by the times at which the large steps are half done.
+    /// The time of the first order, refined by the times at which the large steps are half complete.
     fn refined(&self, begin: f64) -> f64 {
         let half_way = |i: usize| {
             let (from, to) = (self.rest(begin, PAUSE, i - 1)?, self.rest(begin, PAUSE, i)?);
@@ -345,7 +345,7 @@ impl Path {
         steps
     }
 
-    /// The dead band by the small steps: what a step moves less than it was ordered.
+    /// The dead band, found by the small steps: a step moves less than ordered by this width.
     fn dead_band(
         &self,
         begin: f64,
@@ -353,7 +353,7 @@ impl Path {
         rests: &[Option<f64>],
         gain: f64,
     ) -> DeadBand {
-        // Deviations of single pictures from their rests.
+        // Deviations of single pictures from the mean of their rest.
         let (mut squares, mut freedom, mut pictures) = (0.0, 0usize, 0usize);
         for (i, rest) in rests.iter().enumerate() {
             let seen = &self.turns[self.resting(begin, PAUSE, i)];
@@ -380,7 +380,7 @@ impl Path {
             if !has_moved {
                 still = still.max(ordered.abs());
             } else if had_moved && moved < SMALL {
-                // Now it stood at the edge of its dead band; before, anywhere in it.
+                // After a movement the servo stands at the edge of its dead band; before, it may be anywhere in it.
                 lost.push(ordered.abs() - moved);
             }
         }

@@ -1,4 +1,4 @@
-//! A walk from one rest to the next: the cycles of one gait, and what makes them uncertain.
+//! A walk from one rest to the next: the cycles of one gait, and the sources of their uncertainty.
 
 use lizard_contact::Travel;
 
@@ -8,16 +8,16 @@ use crate::cycles::Cycles;
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Walk {
     pub cycles: Cycles,
-    /// The variances of a mean cycle that follow from those of the scene: forward, left, turn.
+    /// The variances of a mean cycle that result from those of the scene: forward, left, turn.
     pub doubts: [f64; 3],
     /// Standard error of all lengths, as a share.
     pub scale: f64,
-    /// The pictures' places within the cycles.
+    /// The deviation of each picture from the predicted path.
     pub offs: Vec<Off>,
 }
 
 impl Walk {
-    /// The errors of a mean cycle that its cycles share: of ruler and height, clock and camera.
+    /// The errors of a mean cycle that all its cycles share: those of ruler and height, clock and camera.
     pub(crate) fn common(&self) -> [f64; 3] {
         let ways = parts(&self.cycles.travels);
         let [period, error] = self.cycles.period;
@@ -30,10 +30,10 @@ impl Walk {
     }
 }
 
-/// The place in a picture less that predicted, both seen from the beginning of the cycle.
+/// The place in a picture minus the predicted one, both relative to the beginning of the cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Off {
-    /// Number of the cycle.
+    /// Index of the cycle.
     pub cycle: usize,
     /// Phase of the picture, 0 to 1.
     pub phase: f64,
@@ -41,7 +41,7 @@ pub(crate) struct Off {
     pub off: [f64; 3],
 }
 
-/// Forward, left and turn of each cycle.
+/// Forward, left and turn of every cycle.
 pub(crate) fn parts(travels: &[Travel]) -> [Vec<f64>; 3] {
     let part = |part: fn(&Travel) -> f64| travels.iter().map(part).collect();
     [

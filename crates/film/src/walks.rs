@@ -1,22 +1,23 @@
 //! The walks of a path: the times in which the robot moves, between its rests.
 //!
-//! A robot that goes slowly within a cycle does not rest: a rest lasts longer than any part of a cycle in which a
-//! gait stands still.
+//! A robot that is slow within a cycle does not rest: a rest lasts longer than any part of a cycle in which a gait
+//! stands still.
 
 use crate::gait::{Gait, MOVED, movement, size};
 use crate::path::Seen;
 
 /// Shortest rest, s.
 const REST: f64 = 0.8;
-/// Distance of the places of a rest from their mean, mm: root of the mean square. A tag's place is uncertain by less.
+/// Largest root-mean-square distance of the places in a rest from their mean, mm. The error of a tag's place is
+/// smaller.
 const STILL: f64 = 0.5;
-/// Least number of pictures of a rest.
+/// Smallest number of pictures of a rest.
 const LEAST: usize = 3;
-/// Shortest rest over the longest time for which a gait stands still.
+/// Ratio of the shortest rest to the longest time for which a gait stands still.
 const MORE: f64 = 1.4;
 
-/// Finds the times from the middle of one rest to that of the next in which the robot gets somewhere, s. A rest lasts `rest`
-/// seconds or more.
+/// Finds the times, s, from the middle of one rest to that of the next between which the robot moves away. A rest
+/// lasts `rest` seconds or more.
 pub(crate) fn of(path: &[Seen], rest: f64) -> Vec<[f64; 2]> {
     let mut rests = vec![false; path.len()];
     for (first, seen) in path.iter().enumerate() {
@@ -39,11 +40,11 @@ pub(crate) fn of(path: &[Seen], rest: f64) -> Vec<[f64; 2]> {
         let end = (next..path.len())
             .find(|&i| rests[i] != is_rest)
             .unwrap_or(path.len());
-        // From one picture of a rest to the next.
+        // Includes the last picture of the rest before and the first picture of the rest after.
         let walk = &path[next.saturating_sub(1)..(end + 1).min(path.len())];
         let [first, last] = [0, walk.len() - 1].map(|i| walk[i].seconds);
         if !is_rest && goes(walk) {
-            // A gait may begin and end with a time in which the robot stands still.
+            // The gait may begin and end with a time in which the robot stands still.
             let from = path[0].seconds.max(first - rest / 2.0);
             walks.push([from, path[path.len() - 1].seconds.min(last + rest / 2.0)]);
         }
@@ -52,13 +53,13 @@ pub(crate) fn of(path: &[Seen], rest: f64) -> Vec<[f64; 2]> {
     walks
 }
 
-/// The shortest rest between two walks of these gaits, s: no part of their cycles is still for so long.
+/// The shortest rest between two walks of these gaits, s: longer than any standstill within their cycles.
 pub fn rest(gaits: &[Gait]) -> f64 {
     let longest = gaits.iter().map(longest_still).fold(0.0, f64::max);
     (longest * MORE).max(REST)
 }
 
-/// The longest time of a cycle in which the robot stands still, s.
+/// The longest time within a cycle in which the robot stands still, s.
 fn longest_still(gait: &Gait) -> f64 {
     let count = gait.path.len() - 1;
     let seconds = |i: usize| i as f64 * gait.period / count as f64;
@@ -74,7 +75,7 @@ fn longest_still(gait: &Gait) -> f64 {
     (0..count).map(still).fold(0.0, f64::max)
 }
 
-/// True if these places differ by no more than pictures of one place do.
+/// True if the places differ no more than those in pictures of a robot at rest.
 fn is_still(path: &[Seen]) -> bool {
     let count = path.len() as f64;
     let moves: Vec<[f64; 3]> = path
@@ -86,7 +87,7 @@ fn is_still(path: &[Seen]) -> bool {
     path.len() >= LEAST && (moves.iter().map(away).sum::<f64>() / count).sqrt() < STILL
 }
 
-/// True if the robot gets away from the first place.
+/// True if the robot moves away from the first place.
 fn goes(path: &[Seen]) -> bool {
     let start = path[0].place;
     path.iter()

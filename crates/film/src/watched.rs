@@ -1,4 +1,4 @@
-//! A watched film: the camera and the robot's path are known, and gaits are measured in it.
+//! A watched film: its camera and the robot's path are known, so that gaits can be measured.
 
 use lizard_contact::Travel;
 
@@ -14,24 +14,24 @@ use crate::trouble::Trouble;
 use crate::walk::{Walk, parts};
 use crate::{walks, within};
 
-/// Standard deviations of what a user measures: the deck tag's height, mm, and the ruler, as a share.
+/// Standard deviations of the user's measurements: of the deck tag's height, mm, and of the ruler, as a share.
 const HEIGHT_SIGMA: f64 = 1.0;
 const RULER_SIGMA: f64 = 0.001;
 
-/// The camera as it was found.
+/// The camera of a watched film.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sight {
     /// Focal length, px.
     pub focal: f64,
-    /// Height above the floor, mm, in the first picture.
+    /// Height above the floor in the first picture, mm.
     pub height: f64,
-    /// Tilt from straight down, deg, in the first picture.
+    /// Tilt from straight down in the first picture, deg.
     pub tilt: f64,
-    /// Mean error of a corner on the floor, px.
+    /// Root-mean-square error of a floor tag's corner, px.
     pub error: f64,
-    /// True if the camera moved.
+    /// True if the camera moved during the film.
     pub moved: bool,
-    /// Height of the deck's tag by its size, mm.
+    /// Height of the deck tag found by its size, mm.
     pub deck: f64,
 }
 
@@ -43,14 +43,14 @@ pub struct Watched {
     /// The camera.
     pub sight: Sight,
     scene: Scene,
-    /// The pictures of the path.
+    /// The tags of each picture of the path.
     frames: Vec<Frame>,
-    /// Height of the deck's tag above the floor, mm.
+    /// Given height of the deck tag above the floor, mm.
     deck: f64,
 }
 
 impl Watched {
-    /// A film with one frame for each place of the path.
+    /// A film with a frame for each place of the path.
     pub(crate) fn new(
         path: Vec<Seen>,
         sight: Sight,
@@ -67,15 +67,15 @@ impl Watched {
         }
     }
 
-    /// Measures a gait between two times, s, or in the whole film.
+    /// Measures a gait between two times, s, or in the entire film.
     ///
     /// # Errors
-    /// Fails if the path there is not that of the gait, or too short.
+    /// Fails if the path in that time differs from that of the gait, or is too short.
     pub fn measure(&self, gait: &Gait, during: Option<[f64; 2]>) -> Result<Measured, Trouble> {
         let path = self.part(during);
         let cycles = cycles::find(path, gait)?;
         let doubts = self.doubts(&cycles);
-        // A tag that is higher looks as if it went farther.
+        // A deck tag that is higher than given seems to move farther.
         let scale = (HEIGHT_SIGMA / (self.sight.height - self.deck)).hypot(RULER_SIGMA);
         let offs = within::offs(path, &cycles, gait);
         let walk = Walk {
@@ -87,12 +87,13 @@ impl Watched {
         Ok(Measured::of(vec![walk], gait))
     }
 
-    /// Finds the walks: from the middle of one rest to that of the next, s. The robot rests if it stands still for `rest` seconds, at least those of [`rest`](crate::rest).
+    /// Finds the walks, each from the middle of one rest to that of the next, s. The robot rests if it stands still
+    /// for `rest` seconds; that should be no less than [`rest`](crate::rest) returns.
     pub fn walks(&self, rest: f64) -> Vec<[f64; 2]> {
         walks::of(&self.path, rest)
     }
 
-    /// Finds which of some gaits the robot walks between two times, s.
+    /// Finds which of the gaits the robot walks between two times, s.
     pub fn likeness(&self, gaits: &[Gait], during: [f64; 2]) -> Likeness {
         likeness::of(self.part(Some(during)), gaits)
     }
@@ -103,7 +104,7 @@ impl Watched {
         self.frames.iter().filter_map(camera)
     }
 
-    /// The path between two times, or all of it.
+    /// The path between two times, s, or all of it.
     fn part(&self, during: Option<[f64; 2]>) -> &[Seen] {
         let [from, to] = during.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
         let begin = self.path.partition_point(|seen| seen.seconds < from);
@@ -111,9 +112,9 @@ impl Watched {
         &self.path[begin..end.max(begin)]
     }
 
-    /// The variances of a mean cycle that follow from those of the scene: forward, left, turn.
+    /// The variances of a mean cycle that result from those of the scene: forward, left, turn.
     fn doubts(&self, cycles: &Cycles) -> [f64; 3] {
-        // A camera that moves has a pose for each picture, from the parameters that all of them share.
+        // A camera that moves has its own pose in each picture, so only the five shared parameters count.
         let count = if self.sight.moved { 5 } else { 11 };
         let scene = &self.scene;
         let nearest = |time: &f64| {

@@ -1,8 +1,8 @@
-//! The mean path within a cycle beside the predicted one.
+//! The mean path within a cycle, compared with the predicted one.
 //!
-//! Pictures come at any phase, and a straight line between two of them is not the path. So the place in each
-//! picture is compared with the predicted one at the same phase, and the differences, which change slowly, are averaged over
-//! parts of the cycle.
+//! Pictures are taken at any phase, and a straight line between two of them is not the path. So the place in each
+//! picture is compared with the predicted place at the same phase. The differences change slowly, and are averaged
+//! over parts of the cycle.
 
 use lizard_contact::Travel;
 
@@ -12,13 +12,13 @@ use crate::mean::{self, Mean};
 use crate::path::Seen;
 use crate::walk::{Off, Walk};
 
-/// Largest number of parts of a cycle; a part has at least one picture.
+/// Largest number of parts of a cycle; each part should have at least one picture.
 const PARTS: usize = 24;
 
-/// A point of the mean path within a cycle, seen from the cycle's beginning: forward and left, mm, and turn, deg.
+/// A point of the mean path within a cycle, relative to the cycle's beginning: forward and left, mm, and turn, deg.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
-    /// Phase, 0 to 1: the middle of the part of a cycle whose pictures tell the point.
+    /// Phase, 0 to 1: the middle of the part of the cycle that the point stands for.
     pub phase: f64,
     /// The measured place with its spread and error.
     pub measured: [Mean; 3],
@@ -27,7 +27,7 @@ pub struct Point {
 }
 
 impl Point {
-    /// The measured place less the predicted one, in standard errors.
+    /// The measured place minus the predicted one, in standard errors.
     pub fn differs(&self) -> [f64; 3] {
         [0, 1, 2].map(|axis| {
             let Mean { mean, error, .. } = self.measured[axis];
@@ -56,7 +56,7 @@ pub(crate) fn offs(path: &[Seen], cycles: &Cycles, gait: &Gait) -> Vec<Off> {
     offs
 }
 
-/// The mean path over walks. A part of the cycle that too few pictures show has no point.
+/// The mean path over walks. A part of the cycle with too few pictures has no point.
 pub(crate) fn points(walks: &[Walk], gait: &Gait) -> Vec<Point> {
     let pictures = walks
         .iter()
@@ -65,7 +65,7 @@ pub(crate) fn points(walks: &[Walk], gait: &Gait) -> Vec<Point> {
     let mut points: Vec<Point> = (0..count)
         .filter_map(|part| point(walks, gait, part, count))
         .collect();
-    // A few cycles tell their spread badly: no part is taken for better known than they are on average.
+    // A few cycles give an inaccurate spread, so no part gets a smaller error than the average one.
     for axis in 0..3 {
         let squares = points.iter().map(|point| own(point.measured[axis]).powi(2));
         let usual = (squares.sum::<f64>() / points.len() as f64).sqrt();
@@ -77,12 +77,12 @@ pub(crate) fn points(walks: &[Walk], gait: &Gait) -> Vec<Point> {
     points
 }
 
-/// The part of an error that the spread of cycles makes.
+/// The part of an error that results from the spread of the cycles.
 fn own(mean: Mean) -> f64 {
     (mean.error.powi(2) - mean.common.powi(2)).max(0.0).sqrt()
 }
 
-/// The point of a part of the cycle.
+/// The point for a part of the cycle.
 fn point(walks: &[Walk], gait: &Gait, part: usize, count: usize) -> Option<Point> {
     let phase = (part as f64 + 0.5) / count as f64;
     let predicted = parts(gait.at(phase).travel());
@@ -90,7 +90,7 @@ fn point(walks: &[Walk], gait: &Gait, part: usize, count: usize) -> Option<Point
     let mean = |axis: usize| {
         let own = |walk: &Walk| {
             let cycles = in_cycles(walk, part, count, axis);
-            // A beginning that is late, a scale that is wrong, a camera that is elsewhere.
+            // The common errors: of the cycle's beginning, of the scale, and of the camera.
             let late = pace[axis] * walk.cycles.begin_error / walk.cycles.period[0];
             let scale = if axis < 2 {
                 predicted[axis] * walk.scale
@@ -114,7 +114,7 @@ fn point(walks: &[Walk], gait: &Gait, part: usize, count: usize) -> Option<Point
     })
 }
 
-/// The mean difference in a part of each cycle that has a picture there.
+/// The mean difference in a part of the cycle, for each cycle that has a picture there.
 fn in_cycles(walk: &Walk, part: usize, count: usize, axis: usize) -> Vec<f64> {
     let is_here = |off: &&Off| (off.phase * count as f64) as usize == part;
     let cycle = |cycle: usize| {

@@ -1,5 +1,4 @@
-//! The program `lizard`, in modules by what its user does; `commands` has the table of its
-//! commands.
+//! The program `lizard`. Its modules follow the tasks of the user; `commands` has the table of commands.
 
 mod change;
 pub mod commands;

@@ -1,29 +1,29 @@
-//! The card with the tag on the robot's deck, which nobody glues on exactly.
+//! The mounting error of the card with the tag on the robot's deck.
 //!
-//! A card that is turned sees a part of the way ahead as drift, and one beside the middle of the robot is carried around it
-//! in a turn. Both look like a mass centre or a foot that they are not.
+//! A rotated card measures a part of the forward movement as drift, and a card off the robot's centre moves on an
+//! arc when the robot turns. If this is ignored, both look like an error of the mass centre or of a foot.
 
 use lizard_robot::{Place, Travel};
 
-/// The place of the card on the robot.
+/// The place of the card on the robot, relative to the chassis centre and its forward direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Card {
-    /// Turn from the robot's direction, deg, counter-clockwise.
+    /// Rotation against the robot's forward direction, deg, counter-clockwise.
     pub turn: f64,
-    /// Distance of its middle ahead of the chassis centre, mm.
+    /// Distance of the card's centre ahead of the chassis centre, mm.
     pub ahead: f64,
-    /// The same to the left, mm.
+    /// Distance of the card's centre to the left of the chassis centre, mm.
     pub left: f64,
 }
 
-/// Number of the card's parts.
+/// Number of parameters of a card.
 pub(crate) const COUNT: usize = 3;
 
 impl Card {
-    /// Standard deviations of cards that people glue on: deg, mm, mm.
+    /// Standard deviations of the mounting errors of hand-glued cards: deg, mm, mm.
     pub(crate) const DOUBTS: [f64; COUNT] = [2.0, 2.0, 2.0];
 
-    /// The movement of the card in a movement of the robot.
+    /// Converts a movement of the robot to that of the card, in the card's frame at the start.
     pub(crate) fn seen(&self, travel: Travel) -> Travel {
         let at = |body: Place| {
             let [forward, left] = body.on_floor([self.ahead, self.left]);

@@ -1,9 +1,9 @@
-//! The distribution of a sum of squares.
+//! The chi-square distribution.
 
-/// The sum of squares of so many normal deviates that 1 % of such sums exceed (Wilson and Hilferty 1931: to 2 % from one
-/// degree of freedom on).
+/// The value that a chi-square variable exceeds with a probability of 1 %, by the approximation of Wilson and
+/// Hilferty (1931): accurate to 2 % from one degree of freedom on.
 pub(crate) fn rare(freedom: f64) -> f64 {
-    /// The normal deviate that 1 % exceed.
+    /// The normal deviate that is exceeded with a probability of 1 %.
     const DEVIATE: f64 = 2.326_35;
     let spread = 2.0 / (9.0 * freedom);
     freedom * (1.0 - spread + DEVIATE * spread.sqrt()).powi(3)

@@ -1,9 +1,9 @@
-//! The fit of all keys, and the choice of those that are moved.
+//! The fit of all keys, and the choice of the keys whose value changes.
 //!
-//! First all keys are free: their errors are those that hold if none of the file's values is trusted, and they
-//! are the errors that are stated. Then keys go back to the file's value, always the one that is nearest to it in
-//! its errors, while it is nearer than two. The others follow each time, so of two keys that look alike one
-//! takes what both have to explain.
+//! First all keys are free. The standard errors of this fit are the ones that are reported, since they trust none
+//! of the file's values. Then keys return to the file's value one by one: always the key that is nearest to it in
+//! units of its error, as long as that distance is below two. After each step the free keys adjust, so of two keys
+//! with the same effect one explains what both have to explain.
 
 use lizard_robot::{CheckedGait, Robot, Travel};
 use nalgebra::DMatrix;
@@ -16,27 +16,28 @@ use crate::problem::{Problem, Solution, UNKNOWNS, Values, split};
 use crate::trouble::Trouble;
 use crate::way::Way;
 
-/// Keys around whose value in the file the model bends most.
+/// Keys for which the model is least linear near the file's value.
 const FOLDED: [usize; 3] = [PLAY, TWIST, RATIO];
-/// Distance from the file's value, in standard errors, from which on a key is moved.
+/// Distance from the file's value, in standard errors, from which on a key takes its new value.
 const MOVES: f64 = 2.0;
-/// Least rise of the sum of squares at that distance that is taken for one, and not for the model's roughness: errors
-/// become up to four times as large.
+/// Least rise of the sum of squares that counts when a key is moved by [`MOVES`] errors; a smaller one may be the
+/// model's roughness. It limits the growth of an error to a factor of four.
 const LEAST_RISE: f64 = 0.25;
-/// Share of its doubt that the ways may leave of a key that counts as told.
+/// Largest standard error of a key that counts as determined, as a share of its prior standard deviation.
 const TOLD: f64 = 0.5;
-/// Correlation from which on two keys are said to look alike.
+/// Correlation of errors above which two keys are reported as hard to distinguish.
 const ALIKE: f64 = 0.8;
 
-/// Calls a function for each of some numbers from 0 on, and returns the results in order: one after another, or on all cores.
+/// Runs a function for the indices from 0 up to a count, one after another or on all cores, and returns the results
+/// in order.
 pub type Each<'a> = &'a dyn Fn(usize, &(dyn Fn(usize) -> Travel + Sync)) -> Vec<Travel>;
 
-/// Finds the keys of a robot by ways that were measured on it. `each` walks the gaits of the model, some hundreds of them
-/// for a tenth of a second each.
+/// Identifies the keys of a robot from its measured movements. `each` runs the gaits of the model: some hundreds, a
+/// tenth of a second each.
 ///
 /// # Errors
-/// Fails for a way of a gait that the robot does not have or that stands, for figures that are no numbers, and if no way tells
-/// anything.
+/// Fails for a gait that the robot does not have or that moves no servo, for figures that are not finite or out of
+/// range, and if no movement determines a key.
 pub fn identify(robot: &Robot, ways: &[Way], each: Each) -> Result<Identified, Trouble> {
     let mut ways = ways.to_vec();
     let mut walks = Vec::new();
@@ -77,7 +78,7 @@ pub fn identify(robot: &Robot, ways: &[Way], each: Each) -> Result<Identified, T
     solve(&ways, start, &predict)
 }
 
-/// Finds the keys with which a model goes the ways.
+/// Finds the keys with which a model reproduces the measured movements.
 pub(crate) fn solve(
     ways: &[Way],
     start: Values,
@@ -94,7 +95,7 @@ pub(crate) fn solve(
         limit,
         explains,
     } = fit_all(&problem)?;
-    // What the model leaves unexplained is in the keys as well (the ratio of Birge, 1932).
+    // Deviations that the model does not explain widen the errors of the keys (ratio of Birge, 1932).
     let widened = match freedom < 1.0 {
         true => 1.0,
         false => (full.chi_square / freedom).sqrt().max(1.0),
@@ -145,20 +146,21 @@ pub(crate) fn solve(
     })
 }
 
-/// The fit of all unknowns, and how well it explains the ways.
+/// A fit of all unknowns, and its agreement with the measurements.
 struct Fit {
     full: Solution,
     freedom: f64,
-    /// The sum of squares that 1 % of true models exceed; 0 without a degree of freedom.
+    /// Sum of squares that 1 % of correct models exceed; 0 without a degree of freedom.
     limit: f64,
     explains: bool,
 }
 
 /// Fits all unknowns.
 ///
-/// The model is not linear: which feet carry the body changes with the foot that is too long, and play changes nothing
-/// until it does. So a fit that leaves more of the ways than a true model does on average starts again where those keys are
-/// far to either side. That it leaves no more than a true model may is not enough: a minimum beside the least one does that, too.
+/// The model is not linear: which feet carry the body changes with the foot that is too long, and small play may
+/// have no effect at all. So a fit that leaves a larger sum of squares than a correct model does on average starts
+/// again with those keys far to either side. A sum below the limit of a correct model is not enough, since a local
+/// minimum may reach that, too.
 fn fit_all(problem: &Problem) -> Result<Fit, Trouble> {
     let all: Vec<usize> = (0..UNKNOWNS).collect();
     let before = problem.before();
@@ -194,11 +196,12 @@ fn fit_all(problem: &Problem) -> Result<Fit, Trouble> {
     best.ok_or(Trouble::NoFit)
 }
 
-/// The standard errors of a fit of all unknowns.
+/// Standard errors of a fit of all unknowns.
 ///
-/// Those of the slopes hold if the model is linear. It has folds: a foot that is a little longer takes over a load, a longer
-/// one changes nothing. So each key is moved by two errors to either side, the others following as they are correlated with
-/// it, which would raise the sum of squares by four; where it rises less, the error is so much larger.
+/// The errors from the derivatives hold if the model is linear. It has folds: a foot that is a little longer takes
+/// over a load, and an even longer one changes nothing more. So each key is moved by two errors to either side, and
+/// the others follow by their correlation with it. In a linear model the sum of squares would rise by four; where
+/// it rises less, the error is enlarged accordingly.
 fn errors(problem: &Problem, full: &Solution) -> [f64; UNKNOWNS] {
     let least = problem.cost(&full.at);
     std::array::from_fn(|i| {
@@ -215,13 +218,14 @@ fn errors(problem: &Problem, full: &Solution) -> [f64; UNKNOWNS] {
     })
 }
 
-/// The figures less what the fit of all unknowns used up: of each as much as the ways, and not its doubt, tell of it.
+/// Degrees of freedom of a fit of all unknowns: the figures less the share of each unknown that the measurements,
+/// and not its prior, determine.
 fn freedom(problem: &Problem, full: &Solution) -> f64 {
     let told = (0..UNKNOWNS).map(|i| 1.0 - full.covariance[(i, i)] / problem.doubts[i].powi(2));
     problem.figures() as f64 - told.sum::<f64>()
 }
 
-/// Returns keys to the file's values until the others are far from theirs.
+/// Returns keys to the file's values until every free key is at least [`MOVES`] errors from its own.
 fn choose(
     problem: &Problem,
     full: &Solution,
@@ -238,7 +242,7 @@ fn choose(
         }
     }
     loop {
-        // In the linear model first, which costs nothing.
+        // The linear model comes first, since it costs nothing.
         while let Some((key, verdict)) = next(&verdicts, &guess, &before, errors) {
             verdicts[key] = verdict;
             hold(key, &before, &mut guess, &mut covariance);
@@ -257,7 +261,7 @@ fn choose(
     }
 }
 
-/// The free key that is to be held next, and the reason.
+/// The free key to hold next, and the reason.
 fn next(
     verdicts: &[Verdict; COUNT],
     at: &[f64; UNKNOWNS],
@@ -274,7 +278,7 @@ fn next(
     Some((low, Verdict::Impossible(at[low])))
 }
 
-/// Holds a key at its value before, and lets the others follow as they are correlated with it.
+/// Holds a key at the file's value, and lets the others follow by their correlation with it.
 fn hold(
     key: usize,
     before: &[f64; UNKNOWNS],
@@ -293,7 +297,7 @@ fn hold(
     at[key] = before[key];
 }
 
-/// The pairs of keys whose errors are correlated.
+/// Pairs of keys whose errors are strongly correlated, with the correlation.
 fn alike(covariance: &DMatrix<f64>) -> Vec<(&'static crate::Key, &'static crate::Key, f64)> {
     let pairs = (0..COUNT).flat_map(|i| (0..i).map(move |j| (j, i)));
     let correlated = pairs.map(|(i, j)| {

@@ -1,26 +1,26 @@
-//! The keys of robot.toml that ways can tell.
+//! The keys of robot.toml that measured movements can determine.
 
 use lizard_robot::{Ground, plausible};
 
-/// A number of robot.toml that changes the ways of the gaits.
+/// A number of robot.toml that changes the movement of the gaits.
 #[derive(Debug)]
 pub struct Key {
     /// Full name in robot.toml.
     pub name: &'static str,
-    /// Index in a key that is a list.
+    /// Index of the number if the key is a list.
     pub(crate) of_list: Option<usize>,
-    /// Meaning of the number.
+    /// Meaning of the number, in words.
     pub words: &'static str,
     /// Unit, empty for a ratio.
     pub unit: &'static str,
-    /// Another way to measure it.
+    /// Another method to measure the number, in words.
     pub otherwise: &'static str,
-    /// Words of the assumption whose plausible range it has.
+    /// Name of the assumption that gives the plausible range.
     assumed: &'static str,
-    /// Difference by which its influence is measured: large beside the roughness of a model with dead bands
-    /// and sticking pads, small beside the curvature.
+    /// Step of the numerical derivative: large compared with the roughness of a model with dead bands and sticking
+    /// pads, small compared with its curvature.
     pub(crate) step: f64,
-    /// Least value.
+    /// Least possible value.
     pub(crate) least: f64,
     field: fn(&mut Ground) -> &mut f64,
 }
@@ -28,8 +28,8 @@ pub struct Key {
 /// Number of keys.
 pub(crate) const COUNT: usize = 7;
 
-/// The keys, in the order of robot.toml. Its other numbers of the ground cannot be told from these: a stiffer foot is a longer one, and
-/// more mass is more friction.
+/// The keys, in the order of robot.toml. Other numbers of the ground cannot be distinguished from these: a stiffer
+/// foot acts like a longer one, and more mass like more friction.
 pub const KEYS: [Key; COUNT] = [
     Key {
         name: "leg.mount",
@@ -110,7 +110,7 @@ pub const KEYS: [Key; COUNT] = [
     },
 ];
 
-/// Indices of some keys.
+/// Indices in [`KEYS`] of the keys that need special treatment.
 pub(crate) const PLAY: usize = 1;
 pub(crate) const TWIST: usize = 4;
 pub(crate) const RATIO: usize = 6;
@@ -124,7 +124,7 @@ impl Key {
         }
     }
 
-    /// The value on a ground.
+    /// The key's value in the ground of a robot.
     pub fn of(&self, ground: &Ground) -> f64 {
         *(self.field)(&mut { *ground })
     }

@@ -1,23 +1,24 @@
-//! Identification of a built robot: the keys of robot.toml with which the contact model goes as far as the robot did.
+//! Identification of a built robot: the keys of robot.toml with which the contact model moves as the robot did.
 //!
-//! Some keys are assumed until the robot stands on its floor: the play of its legs, the grain of its pads, a foot
-//! that is too long, the mass centre, the mounting of the legs. A film tells how far the robot goes in a cycle of a gait, and
-//! each of these keys changes the gaits in another proportion, so several gaits tell the keys.
-//! [`identify`] finds them by weighted least squares ([`Key`] has the list), together with the place of the card with the tag on
-//! the deck ([`Card`]), which would otherwise pass for a drift.
+//! Some keys are assumptions until the robot stands on its floor: the play of its legs, the grain of its pads, a
+//! foot that is too long, the mass centre, the mounting of the legs. A film shows how far the robot moves in a
+//! cycle of a gait. Each key changes the gaits in different proportions, so several gaits together determine the
+//! keys. [`identify`] finds them by weighted least squares ([`KEYS`] lists them), together with the place of the
+//! card with the tag on the deck ([`Card`]), whose error would otherwise look like drift.
 //!
-//! What the ways do not tell is not changed. A key whose error stays above half of its doubt counts as unknown
-//! ([`Verdict::Untold`]), one that would move by less than two errors as right ([`Verdict::Right`]). If the model leaves more of
-//! the ways than their errors, the errors of all keys grow by as much ([`Goodness`]). [`Identified::text`] writes the new robot.toml.
+//! A key that the movements do not determine keeps its value. A key whose standard error stays above half of its
+//! prior one counts as unknown ([`Verdict::Untold`]), a key that would move by less than two errors as right
+//! ([`Verdict::Right`]). If the model deviates from the movements by more than their errors, the errors of all keys
+//! grow in proportion ([`Goodness`]). [`Identified::text`] writes the new robot.toml.
 //!
 //! The crate starts no thread, and reads, stores and prints nothing.
 //!
 //! # When not to use it
-//! Servos are taken as robot.toml has them: measure them first. A robot whose gaits were not filmed on one and the same
-//! floor has no single ratio of friction.
+//! The servos are taken from robot.toml: measure them first. Gaits that were filmed on different floors have no
+//! single friction ratio.
 //!
 //! # Units
-//! mm and degrees; ways are those of one cycle, seen from its beginning.
+//! mm and degrees; movements are those of one cycle, in the robot's frame at its beginning.
 
 mod card;
 mod chi_square;

@@ -4,76 +4,78 @@ use crate::card::Card;
 use crate::key::Key;
 use crate::way::Way;
 
-/// The result for all keys.
+/// The identified keys and their agreement with the measurements.
 #[derive(Clone, Debug)]
 pub struct Identified {
     /// The keys in the order of [`crate::KEYS`].
     pub keys: Vec<Found>,
-    /// The card, and the standard errors of its parts.
+    /// The place of the card, and the standard errors of its parameters.
     pub card: [Card; 2],
     /// Pairs of keys whose errors are correlated by more than 0.8, with the correlation.
     pub alike: Vec<(&'static Key, &'static Key, f64)>,
-    /// How well the model explains the ways.
+    /// Agreement of the model with the measured movements.
     pub goodness: Goodness,
-    /// The measured ways beside the model's.
+    /// The measured movements beside the model's.
     pub rows: Vec<Row>,
 }
 
-/// The result for a key.
+/// The result for one key.
 #[derive(Clone, Debug)]
 pub struct Found {
     /// The key.
     pub key: &'static Key,
     /// Value in the file.
     pub before: f64,
-    /// Value with which the ways agree best; that of the file unless the key is moved.
+    /// Value with which the measurements agree best; the file's value unless the key is moved.
     pub after: f64,
-    /// Standard error of the value that the ways give it.
+    /// Standard error of the value that the measurements give.
     pub error: f64,
-    /// The decision.
+    /// The decision about the key.
     pub verdict: Verdict,
 }
 
 /// A decision about a key.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
-    /// The ways contradict the file by more than two standard errors.
+    /// The measurements contradict the file by at least two standard errors.
     Moved,
-    /// The file's value agrees with the ways.
+    /// The file's value agrees with the measurements.
     Right,
-    /// The ways leave more than half of its doubt.
+    /// The measurements do not determine the key: its standard error stays above half of the prior one.
     Untold,
-    /// The ways ask for this value, which is below the least possible one.
+    /// The measurements ask for this value, which is below the least possible one; the file's value stays.
     Impossible(f64),
 }
 
-/// How well the model explains the ways.
+/// Agreement of the model with the measured movements.
 #[derive(Clone, Copy, Debug)]
 pub struct Goodness {
-    /// Measured figures.
+    /// Number of measured figures.
     pub figures: usize,
-    /// Sum of squares of the differences in standard errors: with the file's values, with the new ones, and with all keys moved.
+    /// Sum of squares of the differences in standard errors: with the file's values, with the new ones, and with
+    /// all keys free.
     pub chi_square: [f64; 3],
-    /// Figures less what the fit of all keys used up of them.
+    /// Degrees of freedom: the figures less those that the fit of all keys used up.
     pub freedom: f64,
-    /// The sum of squares that 1 % of true models exceed; 0 without a degree of freedom.
+    /// Sum of squares that 1 % of correct models exceed; 0 without a degree of freedom.
     pub limit: f64,
-    /// False if less than 1 % of true models differ as much from the ways.
+    /// True unless fewer than 1 % of correct models differ as much from the measurements.
     pub explains: bool,
     /// Factor by which all errors were widened.
     pub widened: f64,
-    /// The row and the part that differ most from the ways with the new values, in standard errors.
+    /// Row, part and value of the largest difference with the new values, in standard errors.
     pub worst: (usize, usize, f64),
 }
 
-/// A measured way beside the model's.
+/// A measured movement beside the model's.
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// The measured way. A part that two feet against two decide has an infinite error, and counts for nothing.
+    /// The measured movement. A part that is undetermined, since two feet pull against two, has an infinite error
+    /// and no weight.
     pub way: Way,
-    /// The way by the file.
+    /// The model's movement with the file's values.
     pub before: [f64; 3],
-    /// The way with the new values.
+    /// The model's movement with the new values.
     pub after: [f64; 3],
 }
 
@@ -86,7 +88,7 @@ impl Identified {
 }
 
 impl Found {
-    /// Digits behind the point of the value: so many that the error has two.
+    /// Number of decimals of the value: as many as show two digits of the error.
     pub fn digits(&self) -> usize {
         let first = -self.error.log10().floor();
         (first + 1.0).clamp(0.0, 6.0) as usize

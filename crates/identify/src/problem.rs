@@ -1,9 +1,10 @@
-//! The least squares: measured ways less those of the model, each in its standard errors.
+//! The least-squares problem: measured movements less those of the model, in units of their standard errors.
 //!
-//! A way takes the model tens of milliseconds, so each is computed once, and so are the slopes by the keys, until the
-//! keys are far from where they were computed. What is known beforehand counts like a measurement: each key is
-//! near the file's value, by its doubt, and the card near its place. So keys that the ways do not tell stay where they
-//! are and make the errors of the others as large as they are.
+//! The model takes tens of milliseconds for one movement. So each result is stored, and the derivatives with respect
+//! to the keys are reused until the keys are far from the point at which they were computed. Prior knowledge counts
+//! as a measurement: each key is near the file's value, within its prior standard deviation, and the card is near its
+//! place. So a key that the movements do not determine stays where it is, and its uncertainty enlarges the errors
+//! of the others.
 
 use std::cell::RefCell;
 
@@ -14,45 +15,47 @@ use crate::card::{self, Card};
 use crate::key::{COUNT, KEYS, PLAY};
 use crate::way::Way;
 
-/// Values of the keys.
+/// Values of the keys, in the order of [`KEYS`].
 pub(crate) type Values = [f64; COUNT];
-/// Number of unknowns: the keys, then the card's parts.
+/// Number of unknowns: the keys, then the card's parameters.
 pub(crate) const UNKNOWNS: usize = COUNT + card::COUNT;
-/// Standard deviation of the model's own ways around smooth ones, mm and deg: servos have a dead band and pads stick, so
-/// a key that moves a little may shift a step by a frame.
+/// Standard deviation of the model's roughness around a smooth model, mm and deg: servos have a dead band and pads
+/// stick, so a small change of a key may shift a step by a frame.
 pub(crate) const MODEL_ERROR: f64 = 0.05;
-/// Gain of a step in the sum of squares below which a fit has ended; a parameter is then within a third of its error.
+/// Promised reduction of the sum of squares below which a fit ends; a parameter is then within a third of its error.
 const ENOUGH: f64 = 0.1;
-/// Gain that a step promised and did not have, up to which it counts as rough ground and not as wrong slopes.
+/// Promised reduction up to which a step that gains nothing is explained by the model's roughness and not by wrong
+/// derivatives.
 const ROUGH: f64 = 2.0;
 /// Largest number of steps of a fit, and of halvings of a step that gains nothing.
 const STEPS: usize = 12;
 const HALVINGS: usize = 2;
-/// Steps of a key from where its slopes were computed, after which they are computed anew: on the way, and where a fit ends.
+/// Distances, in steps of a key, from the point of the derivatives beyond which they are recomputed: during a fit,
+/// and at its end.
 const FAR: f64 = 4.0;
 const NEAR: f64 = 1.0;
 
-/// The ways of a robot, and a model of it.
+/// The measured movements of a robot, and a model of it.
 pub(crate) struct Problem<'a> {
-    /// Parts that the model does not decide have an infinite error.
+    /// Parts that the model leaves undetermined have an infinite error.
     ways: &'a [Way],
     /// The file's values.
     pub start: Values,
-    /// Standard deviations of the unknowns before anything is measured.
+    /// Prior standard deviations of the unknowns.
     pub doubts: [f64; UNKNOWNS],
     predict: &'a dyn Fn(&Values) -> Vec<Travel>,
     computed: RefCell<Vec<(Values, Vec<Travel>)>>,
-    /// Where the slopes are computed.
+    /// Values at which the derivatives are computed.
     slopes_at: RefCell<Option<Values>>,
 }
 
-/// All unknowns after a fit, those that were held at their start.
+/// All unknowns after a fit; those that were held have their start values.
 #[derive(Clone, Debug)]
 pub(crate) struct Solution {
     pub at: [f64; UNKNOWNS],
-    /// Covariance of those that were not held, in their order.
+    /// Covariance of the free unknowns, in their order.
     pub covariance: DMatrix<f64>,
-    /// Sum of squares of the ways alone.
+    /// Sum of squares of the measured movements alone, without the prior.
     pub chi_square: f64,
 }
 
@@ -74,18 +77,18 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Number of measured figures that count.
+    /// Number of measured figures with a finite error.
     pub fn figures(&self) -> usize {
         let errors = self.ways.iter().flat_map(|way| way.error);
         errors.filter(|error| error.is_finite()).count()
     }
 
-    /// The unknowns before anything is measured.
+    /// Start values of the unknowns: the file's keys, and a card exactly in its place.
     pub fn before(&self) -> [f64; UNKNOWNS] {
         std::array::from_fn(|i| self.start.get(i).copied().unwrap_or_default())
     }
 
-    /// The ways of the model, seen by the card.
+    /// The movements of the model, as seen on the card.
     pub fn seen(&self, at: &[f64; UNKNOWNS]) -> Vec<[f64; 3]> {
         let (values, card) = split(at);
         let travels = self.travels(&values);
@@ -94,12 +97,12 @@ impl<'a> Problem<'a> {
             .collect()
     }
 
-    /// The differences of the measured ways from the model's, in standard errors.
+    /// Differences of the measured movements from the model's, in standard errors.
     pub fn differences(&self, at: &[f64; UNKNOWNS]) -> Vec<[f64; 3]> {
         self.scaled(&self.seen(at), |part, mean| mean - part)
     }
 
-    /// The sum of squares that a fit of all unknowns makes small: of the ways' differences, and of what is known beforehand.
+    /// Sum of squares that a fit of all unknowns minimises: differences of movements, and deviations from the prior.
     pub fn cost(&self, at: &[f64; UNKNOWNS]) -> f64 {
         let ways = self.differences(at).into_flattened();
         let before = self.before();
@@ -115,8 +118,8 @@ impl<'a> Problem<'a> {
         each.map(scaled).collect()
     }
 
-    /// The travels of the model, continued in a straight line below the least values, so that a key that is
-    /// right at its least value may err to both sides.
+    /// The travels of the model. Those for a play below 0 are the reflection of those for the same play above 0, so
+    /// that the fit of a robot without play may err to both sides. Other keys stop at their least values.
     fn travels(&self, values: &Values) -> Vec<Travel> {
         if values[PLAY] < 0.0 {
             let with = |play: f64| {
@@ -145,10 +148,10 @@ impl<'a> Problem<'a> {
         travels
     }
 
-    /// Fits those of the unknowns that are free, the others held at the start, from a guess.
+    /// Fits the free unknowns from a guess; the others are held at their start values.
     ///
-    /// Gauss and Newton's steps, halved while they gain nothing. A finer search than that is in vain: the model is rough,
-    /// because servos have a dead band and pads stick.
+    /// The method is Gauss-Newton, with steps that are halved while they gain nothing. A finer search is useless,
+    /// since the model is rough: servos have a dead band and pads stick.
     pub fn fit(&self, free: &[usize], guess: &[f64; UNKNOWNS]) -> Option<Solution> {
         let before = self.before();
         let mut at = before;
@@ -169,7 +172,7 @@ impl<'a> Problem<'a> {
             let step = &covariance * &gradient;
             let promised = step.dot(&gradient);
             if promised < ENOUGH {
-                // The errors are those of the slopes here, which a fold makes others than where the fit began.
+                // The errors come from the derivatives, which beyond a fold differ from those where the fit began.
                 match self.forget_slopes(split(&at).0, NEAR) {
                     true => continue,
                     false => break,
@@ -186,7 +189,7 @@ impl<'a> Problem<'a> {
                 shorter.filter(|(_, there)| there.norm_squared() < here.norm_squared());
             match better.next() {
                 Some(next) => (at, here) = next,
-                // Slopes from elsewhere may point the wrong way.
+                // Derivatives from another point may lead the wrong way.
                 None if promised > ROUGH && self.forget_slopes(split(&at).0, 0.0) => {}
                 None if self.forget_slopes(split(&at).0, NEAR) => {}
                 None => break,
@@ -202,7 +205,7 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// Has slopes computed anew unless they were within so many steps of these values; returns true if so.
+    /// Discards the derivatives if they were computed more than so many steps from these values; returns true then.
     fn forget_slopes(&self, values: Values, steps: f64) -> bool {
         let mut slopes_at = self.slopes_at.borrow_mut();
         let is_elsewhere = !slopes_at.is_some_and(|at| is_within(steps, at, above_least(values)));
@@ -212,7 +215,7 @@ impl<'a> Problem<'a> {
         is_elsewhere
     }
 
-    /// The derivatives of the residuals by the free unknowns.
+    /// Derivatives of the residuals with respect to the free unknowns.
     fn slopes(&self, free: &[usize], at: &[f64; UNKNOWNS]) -> DMatrix<f64> {
         let near = self.slopes_near(split(at).0);
         let base = std::array::from_fn(|i| near.get(i).copied().unwrap_or(at[i]));
@@ -235,13 +238,13 @@ impl<'a> Problem<'a> {
         slopes
     }
 
-    /// Where slopes are computed that hold at these values.
+    /// The point at which to compute derivatives that are valid at these values.
     fn slopes_near(&self, values: Values) -> Values {
         let mut slopes_at = self.slopes_at.borrow_mut();
         if let Some(at) = slopes_at.filter(|at| is_within(FAR, *at, values)) {
             return at;
         }
-        // Slopes at the least value are those to its free side.
+        // At a least value, the derivatives are those of its feasible side.
         let values = above_least(values);
         *slopes_at = Some(values);
         values
@@ -254,12 +257,12 @@ fn is_within(steps: f64, a: Values, b: Values) -> bool {
     each.all(|((a, b), key)| (a - b).abs() <= steps * key.step)
 }
 
-/// The values, or the least possible ones.
+/// The values, raised to the least possible ones.
 fn above_least(values: Values) -> Values {
     std::array::from_fn(|i| values[i].max(KEYS[i].least))
 }
 
-/// The values of the keys, and the card.
+/// Splits the unknowns into the values of the keys and the card.
 pub(crate) fn split(at: &[f64; UNKNOWNS]) -> (Values, Card) {
     let card: [f64; card::COUNT] = std::array::from_fn(|i| at[COUNT + i]);
     (std::array::from_fn(|i| at[i]), card.into())

@@ -1,4 +1,4 @@
-//! Ways from which nothing can be identified.
+//! The errors of an identification.
 
 /// The reason why nothing is identified.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -6,13 +6,13 @@ pub enum Trouble {
     /// The robot has no such gait.
     #[error("robot.toml has no gait `{0}`; give the robot that was filmed")]
     NoSuchGait(String),
-    /// The gait stands.
+    /// The gait moves no servo.
     #[error("the gait `{0}` moves no servo, so its way tells nothing; leave it out")]
     Still(String),
-    /// A figure of a way is no number, or its error is below zero.
+    /// A figure is not finite, its error is negative, or the pace is not positive.
     #[error("the way of `{0}` has a figure that is no number; measure it again")]
     NoNumber(String),
-    /// There is no way, or two feet pull against two in all of them.
+    /// No movement is given, or two feet pull against two in all of them.
     #[error(
         "in none of these gaits three feet decide the way; measure some that walk or turn, as walk, trot, crawl, left, right"
     )]
@@ -20,10 +20,10 @@ pub enum Trouble {
     /// The fit has no minimum.
     #[error("no robot goes like this; look for a way with a wrong sign or unit")]
     NoFit,
-    /// The text of the robot cannot take a value.
+    /// The text of robot.toml cannot take a new value.
     #[error("{0}; write its table as [table] with one key a line")]
     Text(String),
-    /// The robot with the new keys is refused.
+    /// The robot with the new values is refused.
     #[error(
         "the robot that goes like this is refused: {0}; look for a way with a wrong sign or unit"
     )]

@@ -1,4 +1,4 @@
-//! Keys that were changed on purpose are found by the ways of the changed robot, for every robot of `robots/`.
+//! Keys that are changed on purpose are identified from the changed robot's movements, for each robot of `robots/`.
 
 use std::path::{Path, PathBuf};
 use std::thread;
@@ -7,11 +7,11 @@ use fastrand::Rng;
 use lizard_identify::{Found, Identified, KEYS, Verdict, Way, identify};
 use lizard_robot::{CheckedGait, Ground, Robot, Travel};
 
-/// Standard error of a measured mean, mm and deg: that of some eight cycles.
+/// Standard error of a measured mean, mm and deg: that of about eight cycles.
 const ERROR: f64 = 0.03;
 /// Number of gaits that are filmed.
 const GAITS: usize = 8;
-/// Changes of the keys, in their order, of which a robot has two or three.
+/// Possible change of each key, in their order; a robot gets up to three of them.
 const CHANGES: [f64; 7] = [2.0, 0.5, 6.0, -5.0, 0.5, 0.15, 0.08];
 
 fn set(ground: &mut Ground, key: usize, change: f64) {
@@ -32,12 +32,12 @@ fn normal(rng: &mut Rng) -> f64 {
     (0..12).map(|_| rng.f64()).sum::<f64>() - 6.0
 }
 
-/// One after another.
+/// Runs the walks one after another.
 fn in_turn(count: usize, walk: &(dyn Fn(usize) -> Travel + Sync)) -> Vec<Travel> {
     (0..count).map(walk).collect()
 }
 
-/// The gaits of a robot that go farthest, and the ways of a robot on another ground, as a film measures them.
+/// Movements of the fastest gaits of a robot on another ground, as a film measures them.
 fn ways(robot: &Robot, ground: &Ground, rng: &mut Rng) -> Vec<Way> {
     let far = |gait: &CheckedGait| {
         let way = robot.predict(gait);
@@ -64,7 +64,7 @@ fn ways(robot: &Robot, ground: &Ground, rng: &mut Rng) -> Vec<Way> {
     gaits.iter().map(way).collect()
 }
 
-/// A robot whose keys were changed: the true changes, and what its ways tell.
+/// A robot with changed keys: the true changes, and the identification from its movements.
 struct Trial {
     name: String,
     changes: [f64; 7],
@@ -80,7 +80,7 @@ impl Trial {
         let mut changes = [0.0; 7];
         for _ in 0..3 {
             let key = rng.usize(..CHANGES.len());
-            // No play is less than none.
+            // Play cannot become negative.
             let sign = if key == 1 || rng.bool() { 1.0 } else { -1.0 };
             changes[key] = sign * CHANGES[key];
         }
@@ -103,7 +103,7 @@ impl Trial {
     }
 }
 
-/// `make measure-test`.
+/// Run by `make measure-test`.
 #[test]
 #[ignore = "takes minutes; make measure-test"]
 fn keys_that_were_changed_are_found_within_two_errors_and_right_ones_stay() {
@@ -114,7 +114,7 @@ fn keys_that_were_changed_are_found_within_two_errors_and_right_ones_stay() {
         .collect();
     files.sort();
     assert_eq!(files.len(), 5);
-    // Two robots of each file; SEED=2 has others.
+    // Two variants of each file; another SEED gives other variants.
     let seed = std::env::var("SEED")
         .ok()
         .and_then(|word| word.parse().ok());

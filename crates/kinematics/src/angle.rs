@@ -135,7 +135,7 @@ pub fn sin_cos_all<const N: usize>(degrees: [f64; N]) -> ([f64; N], [f64; N]) {
     (sines, cosines)
 }
 
-/// Exact remainders, for astronomical angles.
+/// Reduces huge angles to their exact remainders.
 #[cold]
 fn reduce(degrees: &mut [f64]) {
     for angle in degrees {
@@ -155,7 +155,7 @@ pub fn atan2(y: f64, x: f64) -> f64 {
     let (ax, ay) = (x.abs(), y.abs());
     let steep = mask(ay > ax);
     let (long, short) = (choose(steep, ay, ax), choose(steep, ax, ay));
-    // In the first 45 degrees: about 0 or about 45, whichever is nearer.
+    // Within the first 45 degrees, the polynomial is that about 0 or about 45, whichever is nearer.
     let diagonal = mask(short > HALF_EIGHTH * long);
     let numerator = choose(diagonal, short - long, short);
     let denominator = choose(diagonal, short + long, long);
@@ -303,7 +303,7 @@ mod tests {
             (1e308, 1e308 % 360.0),
             (-1e308, -1e308 % 360.0),
         ] {
-            // Of the two angles a turn away, the one in range.
+            // Of the three angles that differ by one turn, the one in range.
             let turns = [wrapped - 360.0, wrapped, wrapped + 360.0];
             let wrapped = turns
                 .into_iter()

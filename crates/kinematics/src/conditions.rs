@@ -1,4 +1,4 @@
-//! The value of every condition of a safe pose: what [`crate::Limits`] judges.
+//! The value of every condition of a safe pose, which [`crate::Limits`] judges.
 
 use crate::end::End;
 use crate::five_bar::FiveBarPose;

@@ -165,7 +165,7 @@ impl Lizard {
 /// column.
 const ROWS: [usize; 4] = [0, 2, 4, 6];
 
-/// A column pair: the x and y rows of one loop.
+/// Writes an entry: the x and y rows of one loop, in one column.
 fn put_entry<const N: usize>(matrix: &mut [[f64; N]; 8], row: usize, column: usize, entry: Vector) {
     matrix[row][column] = entry.x;
     matrix[row + 1][column] = entry.y;

@@ -128,8 +128,8 @@ fn loop_derivatives(pose: &FiveBarPose, crank_left: Spin, crank_right: Spin) -> 
     let r3 = pose.right_coupler * pose.bars.coupler_right;
     let r4 = pose.right * pose.bars.crank_right;
     let (u2, u3) = (pose.left_coupler, pose.right_coupler);
-    // r2 x' + ... : the unknown rates x of theta2 and theta3 obey
-    // x left(r2) - y left(r3) = c; dotting with u3, then with u2, frees each.
+    // The unknown rates x of theta2 and y of theta3 obey x left(r2) - y left(r3) = c; the dot product with u3
+    // isolates x, that with u2 isolates y.
     let free = |c: Vector| {
         (
             c.dot(u3) / (pose.bars.coupler_left * pose.type2),
@@ -183,7 +183,7 @@ mod tests {
 
     /// Longest step of the central differences, s.
     const STEP: f64 = 1e-4;
-    /// No angle turns by more than about this in a step, deg.
+    /// Largest angle, about, by which a joint turns in a step, deg.
     const TURN: f64 = 0.1;
 
     /// Every passive quantity in the order of [`numbers`].

@@ -55,8 +55,7 @@ impl End {
         }
     }
 
-    /// A direction or a displacement of the chassis frame in the end's own
-    /// frame, and the other way round.
+    /// Converts a direction or a displacement from the chassis frame to the end's own frame, or back.
     #[inline(always)]
     pub fn mirror<T: Real>(self, vector: Vector<T>) -> Vector<T> {
         match self {
@@ -65,8 +64,7 @@ impl End {
         }
     }
 
-    /// An angle of the chassis frame in the end's own frame, and the other way
-    /// round; degrees, (-180, 180].
+    /// Converts an angle from the chassis frame to the end's own frame, or back; degrees, (-180, 180].
     pub fn mirror_angle(self, degrees: f64) -> f64 {
         wrap(self.sign() * degrees)
     }

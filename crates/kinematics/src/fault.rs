@@ -27,7 +27,7 @@ impl fmt::Display for Part {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fault {
     /// An input is infinite or not a number, or a result would be: lengths beyond
-    /// about 1e75 mm or below 1e-75 mm overflow on the way.
+    /// about 1e75 mm or below 1e-75 mm overflow in the computation.
     NotFinite,
     /// The crank tips are further apart than both couplers reach.
     Apart {

@@ -53,7 +53,7 @@ pub enum AssemblyMode {
 /// A closed five-bar, in its own frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FiveBarPose<T = f64> {
-    /// Links that this pose belongs to.
+    /// Links of the five-bar.
     pub bars: FiveBar,
     /// Direction of the left crank, length one.
     pub left: Vector<T>,
@@ -106,7 +106,8 @@ impl<T: Real> FiveBarPose<T> {
         self.left_coupler.cross(self.left)
     }
 
-    /// Type-1 margin of the right arm, sin(theta3 - theta4), likewise.
+    /// Type-1 margin of the right arm, sin(theta3 - theta4), -1 to 1: 0 where crank and coupler line up, positive for
+    /// an outward elbow.
     #[inline(always)]
     pub fn type1_right(&self) -> T {
         self.right.cross(self.right_coupler)

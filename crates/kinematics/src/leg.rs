@@ -21,7 +21,7 @@ use crate::vector::Vector;
 pub struct Leg {
     /// Between the two pivots on the chassis, mm: lg10.
     pub ground: f64,
-    /// The link that the spring drives, mm: lg1.
+    /// The link that the strut drives, mm: lg1.
     pub crank: f64,
     /// Between crank and follower, mm: lg12.
     pub coupler: f64,

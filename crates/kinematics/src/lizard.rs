@@ -57,7 +57,7 @@ pub struct Lizard {
 /// All joints of the robot at a pose, and its margins.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solution {
-    /// The servo angles it belongs to.
+    /// The servo angles of this solution.
     pub pose: Pose,
     /// The head in its own frame, whose axes are the chassis frame's and whose
     /// origin is the middle of l0.
@@ -73,7 +73,7 @@ pub struct Solution {
     pub legs: [LegPose; 4],
     /// Distance from each singularity.
     pub margins: Margins,
-    /// The robot it belongs to.
+    /// The robot that was solved.
     lizard: Lizard,
 }
 
@@ -182,13 +182,13 @@ impl Lizard {
         end.sign() * self.links.l10 / 2.0
     }
 
-    /// A point of an end's own frame in the chassis frame, mm.
+    /// Converts a point from an end's own frame to the chassis frame, mm.
     #[inline(always)]
     pub fn to_chassis<T: Real>(&self, end: End, point: Vector<T>) -> Vector<T> {
         end.mirror(point) + Vector::of(Vector::new(0.0, self.base_y(end)))
     }
 
-    /// A point of the chassis frame in an end's own frame, mm.
+    /// Converts a point from the chassis frame to an end's own frame, mm.
     #[inline(always)]
     pub fn to_end<T: Real>(&self, end: End, point: Vector<T>) -> Vector<T> {
         end.mirror(point - Vector::of(Vector::new(0.0, self.base_y(end))))
@@ -274,8 +274,8 @@ impl Lizard {
             .shape(AssemblyMode::Ahead, end.mirror(left), end.mirror(right))
     }
 
-    /// The slider of a side at crank directions in servo order (length one,
-    /// chassis frame), likewise.
+    /// The slider of a side at crank directions in servo order (length one, chassis frame); only the side's own two
+    /// are read. It is meaningless if the slider has no direction: see [`Slider::closes`].
     #[inline(always)]
     pub fn shape_side<T: Real>(&self, side: Side, cranks: [Vector<T>; 4]) -> SliderPose<T> {
         let [front, rear] = side.pick(cranks);

@@ -34,7 +34,7 @@ pub struct SingularPose {
 }
 
 impl FiveBar {
-    /// Every singular position with this left crank angle (degrees), on the
+    /// Every singular position with this left crank angle (degrees), in the
     /// assembly mode that the robot is built in; at most ten.
     ///
     /// Coinciding crank tips are isolated, so that only their own crank angles find

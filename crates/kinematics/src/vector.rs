@@ -92,7 +92,7 @@ impl<T: Real> Vector<T> {
         Self::new(self.x * factor, self.y * factor)
     }
 
-    /// The vector that equals a constant one.
+    /// The vector with the components of a constant vector.
     #[inline(always)]
     pub(crate) fn of(vector: Vector) -> Self {
         Self::new(T::of(vector.x), T::of(vector.y))

@@ -1,4 +1,4 @@
-//! The ways of gaits by MuJoCo, an engine that others wrote, for the robots of the project's own files.
+//! The movement of gaits by MuJoCo, an independent physics engine, for the robots of the project's own files.
 
 use std::collections::BTreeMap;
 
@@ -11,9 +11,9 @@ const FILES: [(&str, &str); 4] = [
     ("paper", include_str!("../../../robots/paper.toml")),
     ("unequal", include_str!("../../../robots/unequal.toml")),
 ];
-/// The last run of `make physics`.
+/// Results of the last run of `make physics`.
 const FIGURES: &str = include_str!("../../../tools/physics/figures.json");
-/// Its case without play, lag or a foot too long.
+/// The case of these results without play, lag or a foot that is too long.
 const CASE: &str = "rigid, level";
 
 #[derive(Deserialize)]
@@ -21,7 +21,8 @@ struct Answers {
     mujoco: [f64; 3],
 }
 
-/// The way of a cycle at full pace: mm ahead, mm to the left, deg. `None` if more than comments was changed in the robot's file.
+/// Movement per cycle at full pace: mm ahead, mm to the left, deg. `None` if the robot's file differs from the
+/// project's in more than comments.
 pub fn mujoco(text: &str, gait: &str) -> Option<[f64; 3]> {
     let (robot, _) = FILES
         .into_iter()
@@ -31,7 +32,7 @@ pub fn mujoco(text: &str, gait: &str) -> Option<[f64; 3]> {
     Some(figures.get(robot)?.get(gait)?.get(CASE)?.mujoco)
 }
 
-/// The lines that are not all comment.
+/// The lines of a text that are not comments.
 fn without_comments(text: &str) -> impl Iterator<Item = &str> {
     text.lines().filter(|line| !line.starts_with('#'))
 }

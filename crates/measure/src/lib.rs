@@ -1,8 +1,9 @@
-//! A measured gait beside its prediction, for the program `lizard` and for the page.
+//! Comparison of filmed gaits with their predictions, for the program `lizard` and for the web page.
 //!
-//! A film tells how far the robot goes in a cycle; by itself that says little. [`expected`] is the path that a gait should take,
-//! which the film is compared with, and [`Report`] sets both side by side, as a table, as JSON or as CSV. [`Paper::sheet`] is the sheet
-//! of tags that a film has to show, and [`height_of_board`] where its card lies. The crate reads no file and prints nothing.
+//! A film shows how far the robot moves in a cycle; by itself that says little. [`expected`] is the path that a
+//! gait should take, which the film is compared with. [`Report`] sets both side by side, as a table or as JSON, and
+//! [`WatchedFilm::path`] is the filmed path as CSV. [`Paper::sheet`] is the sheet of tags that a film has to show,
+//! and [`height_of_board`] is the height of the robot's card. The crate reads no file and prints nothing.
 //!
 //! # When not to use it
 //! For a path without a prediction, `lizard_film` is enough.

@@ -1,4 +1,4 @@
-//! The gaits of a film's walks: as the user names them, or as their paths show them.
+//! The gaits of a film's walks, named by the user or recognised by their paths.
 
 use std::cell::OnceCell;
 use std::fmt::Write as _;
@@ -9,7 +9,7 @@ use lizard_robot::{CheckedGait, Robot};
 use crate::expected::expected;
 use crate::watched_film::{Walk, WatchedFilm};
 
-/// Speed of the slowest gait that is looked for where the user names none, mm/s at full pace.
+/// Least speed of the gaits that are considered if the user names none, mm/s at full pace.
 const SLOWEST: f64 = 3.0;
 
 /// A gait and the path that it is predicted to take.
@@ -30,11 +30,11 @@ impl<'a> Candidate<'a> {
     }
 }
 
-/// A walk whose gait is known, measured.
+/// A measured walk whose gait is known.
 #[derive(Debug)]
 pub struct NamedWalk<'f> {
     pub(crate) walk: Walk<'f>,
-    /// Number of its gait in [`Gaits::known`].
+    /// Index of its gait in [`Gaits::known`].
     pub(crate) gait: usize,
     pub(crate) measured: Measured,
 }
@@ -46,12 +46,12 @@ pub struct Gaits<'a> {
     pace: f64,
     /// The gaits that the user names, in their order.
     named: Vec<Candidate<'a>>,
-    /// All that go somewhere; computed when they are asked for.
+    /// All gaits that leave their place; computed on first use.
     all: OnceCell<Vec<Candidate<'a>>>,
 }
 
 impl<'a> Gaits<'a> {
-    /// The gaits that the user names in their order, or none; at a pace of 1 for each gait's own.
+    /// Takes the gaits that the user names, in their order, or none. At a pace of 1 each gait runs at its own.
     pub fn new(robot: &'a Robot, named: &[&'a CheckedGait], pace: f64) -> Self {
         let candidate = |gait: &&'a CheckedGait| Candidate::new(robot, gait, pace);
         Self {
@@ -62,7 +62,7 @@ impl<'a> Gaits<'a> {
         }
     }
 
-    /// The gaits that walks are called by: those that the user names, or else all.
+    /// The gaits that a walk can have: those that the user names, or else all.
     pub(crate) fn known(&self) -> &[Candidate<'a>] {
         match self.named.is_empty() {
             true => self.all(),
@@ -74,7 +74,7 @@ impl<'a> Gaits<'a> {
         self.all.get_or_init(|| {
             let moving = self.robot.gaits().iter().filter(|gait| gait.moves());
             let all = moving.map(|gait| Candidate::new(self.robot, gait, self.pace));
-            // A gait that stays in its place pauses for longer than a robot between two walks.
+            // A gait that stays in its place would make the least rest between two walks too long.
             let goes = |own: &Candidate| own.expected.speed() > SLOWEST * self.pace;
             all.filter(goes).collect()
         })
@@ -83,7 +83,7 @@ impl<'a> Gaits<'a> {
     /// Finds the walks of films, and measures each with its gait.
     ///
     /// # Errors
-    /// Fails with a sentence for the user if the names are not those of the walks, or no gait is clear.
+    /// Fails with a sentence for the user if the names do not match the walks, or if no gait is clear.
     pub fn walks<'f>(&self, films: &'f [WatchedFilm]) -> Result<Vec<NamedWalk<'f>>, String> {
         let expected: Vec<Gait> = self
             .known()
@@ -121,10 +121,10 @@ impl<'a> Gaits<'a> {
         measured.collect()
     }
 
-    /// Measures one of the named gaits, by its number among them, between two times of a film, s, or in all of it.
+    /// Measures one of the named gaits, given by its index, between two times of a film, s, or in all of it.
     ///
     /// # Errors
-    /// Fails with a sentence for the user if the film does not show the gait then.
+    /// Fails with a sentence for the user if the film does not show the gait in that time.
     pub fn walk<'f>(
         &self,
         gait: usize,
@@ -146,7 +146,7 @@ impl<'a> Gaits<'a> {
         })
     }
 
-    /// The gait that a walk shows clearly, by its number.
+    /// Index of the gait that a walk shows clearly.
     fn recognized(&self, walk: Walk) -> Result<usize, String> {
         let name = |number: usize| self.all()[number].name();
         let (why, hint) = match self.likeness(walk) {
@@ -172,13 +172,13 @@ impl<'a> Gaits<'a> {
         Err(format!("{}: {why}{hint}", walk.at()))
     }
 
-    /// The gait of robot.toml that a walk is like.
+    /// The gait of robot.toml that a walk resembles.
     fn likeness(&self, walk: Walk) -> Likeness {
         let all: Vec<Gait> = self.all().iter().map(|own| own.expected.clone()).collect();
         walk.film.watched.likeness(&all, walk.during)
     }
 
-    /// The name of the gait that a walk is clearly like.
+    /// Name of the gait that a walk clearly resembles.
     pub(crate) fn like(&self, walk: Walk) -> Option<&'a str> {
         match self.likeness(walk) {
             Likeness::One(number) => Some(self.all()[number].name()),
@@ -186,7 +186,7 @@ impl<'a> Gaits<'a> {
         }
     }
 
-    /// The reason why a walk is not of its gait.
+    /// The message for a walk that is not of its gait, with the gait that it resembles instead.
     fn not(&self, walk: Walk, own: &Candidate, trouble: Trouble) -> String {
         let like = match trouble {
             Trouble::NotThisGait { .. } | Trouble::AnotherPace { .. } => self.like(walk),
@@ -197,7 +197,7 @@ impl<'a> Gaits<'a> {
         format!("{trouble}{like}")
     }
 
-    /// The failure of films that show another number of walks than there are names.
+    /// The message for films whose number of walks differs from the number of names.
     fn other_number(&self, walks: &[Walk], rest: f64) -> String {
         let names: Vec<&str> = self.named.iter().map(Candidate::name).collect();
         let mut text = format!(

@@ -1,9 +1,9 @@
-//! A part of a movement, way ahead, way to the left or turn, beside its prediction.
+//! One part of a movement (distance ahead, distance to the left, or turn) beside its prediction.
 
 use lizard_film::Mean;
 use serde::Serialize;
 
-/// Distance from the prediction, in standard errors, to which a measurement agrees with it.
+/// Largest distance from the prediction, in standard errors, that counts as agreement.
 pub const AGREES: f64 = 2.0;
 /// The names of a movement's parts.
 pub const PARTS: [&str; 3] = ["ahead, mm", "left, mm", "turn, deg"];
@@ -17,7 +17,7 @@ pub struct Part {
     sd: f64,
     /// Standard error of the mean.
     pub error: f64,
-    /// Null if two feet pull against two.
+    /// The prediction; `None` if it is undetermined, since two feet pull against two.
     pub predicted: Option<f64>,
     /// The mean less the prediction, in standard errors.
     differs: Option<f64>,
@@ -35,7 +35,7 @@ pub fn verdict(differs: f64) -> String {
 
 impl Part {
     pub(crate) fn new(mean: Mean, predicted: Option<f64>) -> Self {
-        // A film without any spread is a drawing; its error is not zero.
+        // A computed film may have no spread; the bound avoids a division by zero.
         let differs = predicted.map(|predicted| (mean.mean - predicted) / mean.error.max(1e-6));
         Self {
             mean: mean.mean,
@@ -52,7 +52,7 @@ impl Part {
         self.differs.map_or("-".to_owned(), verdict)
     }
 
-    /// The line of a table.
+    /// The part's line of a table.
     pub(crate) fn line(&self, name: &str) -> String {
         let predicted = self
             .predicted

@@ -1,4 +1,4 @@
-//! The measured ways of gaits beside the predicted ones, for people and for scripts.
+//! The measured movements of gaits beside the predicted ones, for people and for scripts.
 
 use std::fmt::Write as _;
 
@@ -12,9 +12,10 @@ use crate::part::{PARTS, Part};
 use crate::range::Range;
 use crate::watched_film::WatchedFilm;
 
-/// `AGREES` for the largest of the differences within a cycle: of 72 that happen by chance, one is larger in one of 30 films.
+/// Like `AGREES`, for the largest difference within a cycle: the largest of 72 random differences exceeds it in one
+/// of 30 films.
 const ALL_AGREE: f64 = 3.5;
-/// The result under the names of `--json`.
+/// The result of a measurement; its fields have the names of `--json`.
 #[derive(Debug, Serialize)]
 pub struct Report<'a> {
     films: Vec<FilmLine<'a>>,
@@ -33,18 +34,18 @@ struct FilmLine<'a> {
 /// The result of a gait.
 #[derive(Debug, Serialize)]
 pub struct GaitReport<'a> {
-    /// Its name.
+    /// Name of the gait.
     pub gait: &'a str,
     /// Pace, percent.
     speed: u8,
     walks: Vec<Span<'a>>,
-    /// Number of whole cycles, and the mean time of one with its standard error, s.
+    /// Number of complete cycles, and the mean time of one with its standard error, s.
     pub cycles: usize,
     period: f64,
     period_error: f64,
     /// Time of a cycle by robot.toml, s.
     period_expected: f64,
-    /// Way ahead of a cycle, mm, seen from its beginning.
+    /// Distance ahead in a cycle, mm, in the robot's frame at its beginning.
     pub forward: Part,
     /// Drift to the left, mm.
     pub left: Part,
@@ -55,10 +56,10 @@ pub struct GaitReport<'a> {
     /// The mean path within a cycle, and the point at which it is farthest from the predicted one.
     pub within: Vec<Within>,
     farthest: Option<Farthest>,
-    /// The way of a cycle by MuJoCo with ideal servos: mm ahead and to the left, deg.
+    /// Movement per cycle by MuJoCo with ideal servos: mm ahead and to the left, deg.
     #[serde(skip_serializing_if = "Option::is_none")]
     mujoco: Option<[f64; 3]>,
-    /// The predicted way if an assumption is another one.
+    /// Range of the prediction if an assumption is wrong.
     #[serde(skip_serializing_if = "Option::is_none")]
     range: Option<Range>,
     /// The predicted path of a cycle, evenly in time.
@@ -70,10 +71,10 @@ pub struct GaitReport<'a> {
 #[derive(Debug, Serialize)]
 struct Span<'a> {
     film: &'a str,
-    /// Times in the film, s, with a part of the rests.
+    /// Times in the film, s, with a part of the rests included.
     from: f64,
     to: f64,
-    /// The gait of robot.toml that the path is like, if that is clear and another one.
+    /// The gait of robot.toml that the path clearly resembles, if it is not the walk's own.
     #[serde(skip_serializing_if = "Option::is_none")]
     like: Option<&'a str>,
 }
@@ -81,11 +82,11 @@ struct Span<'a> {
 /// A point of the path within a cycle.
 #[derive(Debug, Serialize)]
 pub struct Within {
-    /// 0 to 1.
+    /// Phase of the cycle, 0 to 1.
     phase: f64,
-    /// Way ahead since the beginning of the cycle, mm.
+    /// Distance ahead since the beginning of the cycle, mm.
     pub forward: Part,
-    /// Way to the left, mm.
+    /// Distance to the left, mm.
     pub left: Part,
     /// Turn, deg.
     pub turn: Part,
@@ -112,14 +113,14 @@ struct Way {
 /// The camera as the tags show it.
 #[derive(Debug, Serialize)]
 struct CameraLine {
-    /// mm above the floor, deg from straight down, px.
+    /// Height above the floor, mm; tilt from straight down, deg; focal length, px.
     height: f64,
     tilt: f64,
     focal: f64,
     /// Mean error of a floor tag's corner, px.
     corners: f64,
     moved: bool,
-    /// Height of the deck's tag, mm: as given, and by its size.
+    /// Height of the deck's tag above the floor, mm: as given, and by its size in the picture.
     deck: f64,
     deck_by_size: f64,
 }
@@ -128,7 +129,7 @@ impl<'a> Span<'a> {
     fn new(gaits: &Gaits<'a>, own: &NamedWalk<'a>, differs: bool) -> Self {
         let [from, to] = own.walk.during;
         let name = gaits.known()[own.gait].name();
-        // Where all agrees, nobody asks.
+        // The likeness matters only if the walk differs from its prediction.
         let like = if differs { gaits.like(own.walk) } else { None };
         Self {
             film: &own.walk.film.name,
@@ -140,7 +141,7 @@ impl<'a> Span<'a> {
 }
 
 impl Farthest {
-    /// The point that is farthest off in errors, of those that are predicted.
+    /// The point with the largest difference in standard errors, among the parts that are predicted.
     fn of(points: &[Point], predicted: [Option<f64>; 3]) -> Option<Self> {
         let all = points.iter().flat_map(|point| {
             let differs = point.differs();
@@ -176,7 +177,7 @@ impl Farthest {
 }
 
 impl<'a> GaitReport<'a> {
-    /// The mean over the walks of a gait.
+    /// The mean over all walks of a gait.
     fn new(
         robot: &Robot,
         speed: u8,
@@ -325,7 +326,8 @@ impl<'a> Report<'a> {
         }
     }
 
-    /// Adds the ways by MuJoCo, which are known at full pace for the robots of the project's own files, by the text of the robot's file.
+    /// Adds the movements by MuJoCo, which are known at full pace for the robots of the project's own files. `text`
+    /// is the content of the robot's file.
     pub fn beside_mujoco(mut self, text: &str) -> Self {
         for gait in self.gaits.iter_mut().filter(|gait| gait.speed == 100) {
             gait.mujoco = mujoco(text, gait.gait);

@@ -1,20 +1,20 @@
-//! A watched film with its name, and the walks in it.
+//! A film after evaluation, with its name, and the walks in it.
 
 use std::fmt::Write as _;
 
 use lizard_film::Watched;
 
-/// A film with its name.
+/// A film after evaluation, with its name.
 #[derive(Debug, Clone)]
 pub struct WatchedFilm {
     /// The name in messages, such as its path.
     pub name: String,
-    /// Its camera and the robot's path in it.
+    /// The camera and the robot's path in the film.
     pub watched: Watched,
 }
 
 impl WatchedFilm {
-    /// The walks between rests; without any, all of the film, which cannot be measured for a reason.
+    /// The walks between rests; without any, the whole film, whose measurement then fails with a reason.
     pub(crate) fn walks(&self, rest: f64) -> Vec<Walk<'_>> {
         let mut walks = self.watched.walks(rest);
         if walks.is_empty() {
@@ -24,7 +24,7 @@ impl WatchedFilm {
         walks.into_iter().map(walk).collect()
     }
 
-    /// Begin and end of the film, s.
+    /// Beginning and end of the film, s.
     pub(crate) fn all(&self) -> Option<[f64; 2]> {
         match &self.watched.path[..] {
             [first, .., last] => Some([first.seconds, last.seconds]),
@@ -54,12 +54,12 @@ impl WatchedFilm {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Walk<'f> {
     pub film: &'f WatchedFilm,
-    /// Its times in the film, s, with a part of the rests.
+    /// Times in the film, s, with a part of the rests included.
     pub during: [f64; 2],
 }
 
 impl Walk<'_> {
-    /// The place of a message.
+    /// The walk's place in a message: the film and the times.
     pub(crate) fn at(&self) -> String {
         let [from, to] = self.during;
         format!("{}, {from:.1} to {to:.1} s", self.film.name)

@@ -20,17 +20,17 @@ use crate::part::{Part, volume};
 use crate::price::Price;
 use loose::{ALWAYS, INPUTS, RADIO, Row};
 
-/// A printed part's mass over its volume, g/mm^3: PLA of 1.24, a third of infill within
-/// three lines of wall. PrusaSlicer's parts are within a tenth of it in sum.
+/// Mass per volume of a printed part, g/mm^3: PLA of 1.24 g/cm^3 with three lines of wall and a third of infill.
+/// The sum of all parts is within a tenth of PrusaSlicer's.
 const PRINTED: f64 = 1.0e-3;
-/// The same of a pad, which is nearly all wall: TPU of 1.21.
+/// Mass per volume of a pad, which is nearly all wall, g/mm^3: TPU of 1.21 g/cm^3.
 const RUBBERY: f64 = 1.15e-3;
-/// Hours of printing in layers of 0.2 mm on an Ender 3, for each piece and each g of it.
-/// PrusaSlicer's are within a tenth of it in sum.
+/// Hours of printing in layers of 0.2 mm on an Ender 3, for each piece and for each gram of it. The sum of all
+/// parts is within a tenth of PrusaSlicer's.
 const HOURS_A_PIECE: f64 = 0.02;
 const HOURS_A_GRAM: f64 = 0.095;
-/// Masses of bought parts, g: a servo, its horn, a UNO, a battery per mm^3, a spring's
-/// steel per mm^3, screws per mm and per head, standoffs per mm, nuts and so on.
+/// Masses of bought parts, g. Those of the battery and of a spring's steel are per mm^3, those of screws and
+/// standoffs per mm of length.
 const SERVO: f64 = 9.5;
 const HORN: f64 = 0.8;
 const BOARD: f64 = 25.0;
@@ -92,7 +92,7 @@ impl Item {
         self.count as f64 * self.grams
     }
 
-    /// A line without a place on the robot.
+    /// A line for something that has no place on the robot.
     fn loose((count, what, grams, price): Row) -> Self {
         Self::bought(count, what.to_owned(), grams, price)
     }
@@ -103,15 +103,15 @@ impl Item {
 pub struct Bill {
     /// Parts to print.
     pub printed: Vec<Item>,
-    /// Parts to print instead of some of these: struts of the other kind.
+    /// Parts that may be printed instead of others: struts of the other kind.
     pub instead: Vec<Item>,
     /// Things to buy.
     pub bought: Vec<Item>,
     /// Things to buy for driving without a cable.
     pub radio: Vec<Item>,
-    /// Things to buy for the inputs and the strips on pads that robot.toml has; an option, too.
+    /// Things to buy for the inputs and the strips on pads that robot.toml has; optional.
     pub inputs: Vec<Item>,
-    /// The sum of the price classes of all things to buy but options, euros.
+    /// Sum of the price classes of all things to buy except options: from and to, euros.
     pub euros: [u32; 2],
     /// The robot's mass, g.
     #[serde(serialize_with = "decimals::one::<1, _>")]
@@ -121,13 +121,13 @@ pub struct Bill {
     pub centre: [f64; 3],
     /// The effect of the springs on the legs; `None` for rigid struts.
     pub hold: Option<SpringEffect>,
-    /// The room of the battery: to the right, forward, up, mm.
+    /// Space for the battery: to the right, forward, up, mm.
     #[serde(skip)]
     battery: [f64; 3],
 }
 
-/// The line of the bill for a bought body, empty if it is printed or comes with another
-/// one, and the body's mass, g.
+/// Text of the bill's line for a bought body, empty if the body is printed or comes with another one; and the
+/// body's mass, g.
 fn bought(body: &Body, assembly: &Assembly, hold: Option<&SpringEffect>) -> (String, f64) {
     let parts = assembly.robot().parts();
     let diameter = parts.screw.diameter;
@@ -371,11 +371,11 @@ impl fmt::Display for Bill {
     }
 }
 
-/// The guide's words about the pads.
+/// The guide's text about the pads.
 const PADS: &str = "The pads are of TPU (95A), all four of one roll: the flat side on the bed, 100 % infill, layers of 0.1 mm. An edge \
                     catches on sharp terraces: smooth each dome with a thin film of flexible glue or silicone, and leave its hole open.";
 
-/// The guide's words about the servos.
+/// The guide's text about the servos.
 const SERVOS: &str = "Take plain analog servos, all four of one make: by the model, digital ones lose 15 % of `walk`, and one with a light rotor more than half.";
 
 /// Rows to buy as a table.
@@ -389,8 +389,7 @@ pub fn to_buy(items: &[Item]) -> String {
     text
 }
 
-/// The places of the battery, of a size, and of the fittings as a table: room, hold, and two
-/// products that fit.
+/// A table of the places for the battery and the fittings: space, what holds the thing, and examples that fit.
 pub fn places(battery: [f64; 3]) -> String {
     let size = |[x, y, z]: [f64; 3]| format!("{x} x {y} x {z}");
     let list = |examples: &mut dyn Iterator<Item = Example>| {
@@ -415,7 +414,7 @@ pub fn places(battery: [f64; 3]) -> String {
     text + OTHERS
 }
 
-/// The words below the places: where sizes come from, and those of everything else.
+/// The text below the table of places: the sources of the sizes, and the sizes of everything else.
 const OTHERS: &str = "
 `~` is a usual size in shops, of which no drawing was found. The other sizes are of data sheets or standards, with their tolerances.
 
@@ -430,7 +429,7 @@ const OTHERS: &str = "
 | board | Arduino UNO R3: 68.6 x 53.4; Elegoo UNO R3: the same outline, holes and sockets |
 ";
 
-/// The guide's words about rigid struts.
+/// The guide's text about rigid struts.
 const RIGID: &str = "The struts are rigid: a foot follows its servo but for the play of pins and gears. A foot that is caught \
                      can stall its servo, which gets hot and may burn out; a strut with a spring is no help there. Watch the robot while it \
                      walks, and switch the servos' supply off when a foot is caught.";

@@ -1,5 +1,4 @@
-//! Numbers in JSON with no more decimals than are known: `UNIT` is 10 for tenths, 1000 for
-//! thousandths.
+//! Rounding of numbers in JSON to the decimals that are known: `UNIT` is 10 for tenths, 1000 for thousandths.
 
 use serde::{Serialize, Serializer};
 

@@ -1,4 +1,4 @@
-//! The robot as parts: from robot.toml to bodies with layers and places.
+//! Solid model of the robot: bodies with layers and places, made from robot.toml.
 //!
 //! The mechanism is flat and all its joints are upright, so a part is a stack of layers,
 //! each a flat shape between two heights, and one table has the heights of the whole

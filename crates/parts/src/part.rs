@@ -1,4 +1,4 @@
-//! A printed part: its layers as it lies on the printer's bed, and the bodies made so.
+//! A printed part: its layers as it lies on the printer's bed, and the bodies that are made from it.
 
 use std::iter::zip;
 
@@ -13,31 +13,30 @@ use crate::layers::placement::Placement;
 use crate::layers::roof;
 use crate::layers::shape::Shape;
 
-/// The word in the names of rings, which are distinguished by length, not by place.
+/// The word in the names of spacer rings, which are distinguished by length, not by position.
 const SPACER: &str = "spacer";
 
 /// A printed part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
-    /// The name. `link A1 A3` is needed twice, for A1 and for A3.
+    /// The name. A part named `link A1 A3` is needed twice, for A1 and for A3.
     pub name: String,
-    /// Names of the bodies that it is printed for.
+    /// Names of the bodies for which it is printed.
     pub bodies: Vec<String>,
     /// The layers as printed: from z = 0 up, the larger face below.
     pub prisms: Vec<Prism>,
     /// True if it is printed on its back.
     pub turned: bool,
-    /// True if it is printed of a rubbery filament, TPU.
+    /// True if it is printed in a rubbery filament, TPU.
     pub rubbery: bool,
-    /// The part that it may replace; `None` for a part that the robot has.
+    /// The part that it may replace; `None` for a standard part of the robot.
     pub instead_of: Option<String>,
-    /// Numbers of its servos, engraved if the part comes in several kinds: `13` for A1 and
-    /// A3. Otherwise empty.
+    /// Numbers of its servos, engraved if there are several kinds of the part: `13` for A1 and A3. Otherwise empty.
     pub mark: String,
 }
 
 impl Part {
-    /// A part of one piece, printed as its layers lie, without a mark.
+    /// A part needed once, printed in the orientation of its layers, without a mark.
     pub(crate) fn single(name: &str, prisms: Vec<Prism>) -> Self {
         Self {
             name: name.to_owned(),
@@ -60,19 +59,19 @@ impl Part {
         self.name.replace(' ', "-")
     }
 
-    /// The layers as printed, with the mark, and the number of holes that are closed in
-    /// them because they would begin in the air.
+    /// The layers as printed, with the mark. Holes that would begin in mid-air are closed; the number says how
+    /// many.
     pub fn printed(&self) -> (Vec<Prism>, usize) {
         let marked = mark::engraved(&self.prisms, &self.mark);
         roof::closed(&marked.unwrap_or_else(|| self.prisms.clone()))
     }
 
-    /// Centres of the holes to be drilled, in the frame of the printed part, mm.
+    /// Centres of the closed holes, which are drilled later, in the frame of the printed part, mm.
     pub fn closed_holes(&self) -> Vec<Vector> {
         roof::in_air(&self.prisms)
     }
 
-    /// The motion that takes the printed part to the place of a body, in that body's frame.
+    /// The motion from the printed part to the position of a body, in that body's frame.
     pub fn print_to_body(&self, body: &Body) -> PrintToBody {
         let [low, high] = body.z();
         PrintToBody {
@@ -88,15 +87,14 @@ impl Part {
     }
 }
 
-/// The motion from a printed part's frame to its body's: flip, lift, then turn and shift
-/// in the plane.
+/// The motion from the frame of a printed part to that of its body: flip, lift, then turn and shift in the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrintToBody {
-    /// True if it is turned over first: x, y, z to x, -y, -z.
+    /// True if the part is first turned over: x, y, z become x, -y, -z.
     pub flipped: bool,
-    /// The lift after that, mm.
+    /// The lift after the flip, mm.
     pub lift: f64,
-    /// The place of the printed part's frame in the body's.
+    /// The placement of the printed part's frame in the body's frame.
     pub frame: Placement,
 }
 
@@ -106,7 +104,7 @@ pub(crate) fn volume(prisms: &[Prism]) -> f64 {
 }
 
 impl Assembly {
-    /// Every printed part, each kind once. Parts that may replace others come last.
+    /// Every printed part, each kind once. Alternative parts come last.
     pub fn parts(&self) -> Vec<Part> {
         let mut parts = distinct_parts(self.bodies());
         let is_strut = |part: &&Part| {
@@ -129,12 +127,12 @@ impl Assembly {
     }
 }
 
-/// A body's name as noun and owner: `link` and `A1`. A name of one word has no owner.
+/// Splits a body's name into noun and owner, such as `link` and `A1`. A name of one word has no owner.
 fn noun_and_owner(name: &str) -> (&str, &str) {
     name.rsplit_once(' ').unwrap_or((name, ""))
 }
 
-/// The numbers of the servos that own some bodies.
+/// The numbers of the servos that own these bodies, in order, as one string.
 fn servo_digits(names: &[String]) -> String {
     let mut numbers: Vec<usize> = Vec::new();
     for name in names {
@@ -149,7 +147,7 @@ fn servo_digits(names: &[String]) -> String {
     digits.collect()
 }
 
-/// The printed parts from which some bodies are made.
+/// The printed parts of these bodies; equal bodies share a part.
 fn distinct_parts(bodies: &[Body]) -> Vec<Part> {
     let mut parts: Vec<Part> = Vec::new();
     for body in bodies.iter().filter(|body| body.kind.is_printed()) {
@@ -179,9 +177,8 @@ fn distinct_parts(bodies: &[Body]) -> Vec<Part> {
     parts
 }
 
-/// A body's layers as printed, and true if they lie on their back. The first shape is at
-/// the origin and the first bar along x, so equal parts have equal layers wherever they
-/// are used.
+/// A body's layers as printed, and true if the body is turned over for that. The first shape is at the origin and
+/// the first bar along x, so equal parts have equal layers wherever they are used.
 fn as_printed(body: &Body) -> (Vec<Prism>, bool) {
     let area = |prism: Option<&Prism>| prism.map_or(0.0, |prism| Outline::of(prism).area());
     let turned = area(body.prisms.first()) < 0.7 * area(body.prisms.last());
@@ -220,7 +217,7 @@ fn frame(body: &Body) -> Placement {
     let shapes = || body.prisms.iter().flat_map(|prism| &prism.add);
     let first = shapes().next();
     let at = first.map_or(Vector::default(), |shape| shape.points[0]);
-    // A pad has a direction only by its notch.
+    // A pad has no bar; only its notch gives it a direction.
     let cuts = body.prisms.iter().flat_map(|prism| &prism.cut);
     let bar = shapes()
         .chain(cuts)
@@ -251,7 +248,7 @@ fn are_equal(a: &[Prism], b: &[Prism]) -> bool {
         })
 }
 
-/// One name for several bodies: the noun that they share, then their owners.
+/// One name for several bodies: their common noun, then their owners.
 fn shared_name(names: &[String]) -> String {
     let (nouns, owners): (Vec<_>, Vec<_>) = names.iter().map(|name| noun_and_owner(name)).unzip();
     match names.len() {

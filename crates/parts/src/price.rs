@@ -1,5 +1,5 @@
-//! Prices of what a robot needs, as classes: shops differ by a factor of three for the
-//! same thing, so a single figure would promise too much.
+//! Price classes of the things to buy. Shops differ by a factor of three for the same item, so a single figure
+//! would suggest too much precision.
 
 use std::fmt;
 
@@ -38,7 +38,7 @@ impl Price {
         }
     }
 
-    /// The message that says what the classes mean.
+    /// The message that explains the classes.
     pub fn meaning() -> String {
         let classes = Self::ALL.map(|class| {
             let [from, to] = class.euros();
@@ -54,7 +54,7 @@ impl Price {
         )
     }
 
-    /// The sum of some classes, euros: from the least to the greatest.
+    /// The sum of some classes, euros: the least and the greatest total.
     pub fn sum(classes: impl Iterator<Item = Self>) -> [u32; 2] {
         classes.fold([0, 0], |sum, class| {
             let [from, to] = class.euros();

@@ -15,7 +15,7 @@ use crate::proof::Clash;
 /// A reason why a robot cannot be built, as the message that the user sees.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Unfit {
-    /// Two parts that collide, or come too near to each other.
+    /// Two parts that collide or come too near each other.
     #[error("{0}; other links, or other measures under [parts] in robot.toml, may keep them apart")]
     Clash(#[from] Clash),
     /// Two parts that move together and overlap.
@@ -31,7 +31,7 @@ pub enum Unfit {
         /// Their overlap, mm.
         mm: f64,
     },
-    /// A measure of robot.toml with which the parts cannot be made.
+    /// A dimension in robot.toml with which the parts cannot be made.
     #[error("{0}")]
     Measure(String),
     /// A screw that cannot be reached.
@@ -39,28 +39,28 @@ pub enum Unfit {
         "{0}, at every pose; other links, or other measures under [parts] in robot.toml, may make room"
     )]
     Blocked(#[from] Blocked),
-    /// A part whose layers do not make a body.
+    /// A part whose layers do not form a single closed body.
     #[error(
         "the layers of {0} do not make one body; a measure under [parts] in robot.toml is too small or too large for it"
     )]
     Surface(String),
 }
 
-/// Two parts that meet, where a robot cannot be built for that reason.
+/// The two parts whose collision is the reason why a robot cannot be built.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Meeting {
     /// Name of one body.
     pub first: String,
     /// Name of the other body.
     pub second: String,
-    /// Their distance, mm; below 0 they overlap.
+    /// Their distance, mm; negative if they overlap.
     pub mm: f64,
-    /// Servo angles there, deg, servo order; `None` if it is so at every pose, or no pose is known.
+    /// Servo angles there, deg, servo order; `None` if they overlap at every pose, or if no pose is known.
     pub pose: Option<[f64; 4]>,
 }
 
 impl Unfit {
-    /// The parts that meet, if that is the reason.
+    /// The parts that collide, if that is the reason.
     #[must_use]
     pub fn meeting(&self) -> Option<Meeting> {
         match self {
@@ -96,13 +96,12 @@ const NUT: &str = "the nut of a leg's anchor does not fit into its crank with a 
                    raise parts.thickness or the servo's horn";
 
 impl Assembly {
-    /// Checks that the robot can be built: that its measures go together, every screw can
-    /// be reached, and no two parts meet at any pose that the guard accepts. The proof of
-    /// the last takes seconds.
+    /// Checks that the robot can be built: that its dimensions are consistent, that no two parts collide at any
+    /// pose that the guard accepts, and that every screw can be reached. The proof about collisions takes seconds.
     ///
     /// # Errors
-    /// Returns the first measure that does not fit, else the two parts that overlap most, else a
-    /// screw that cannot be reached.
+    /// Returns the first dimension that does not fit, else the two parts that overlap most, else a screw that
+    /// cannot be reached.
     pub fn fits(&self) -> Result<(), Unfit> {
         self.measures_fit()?;
         self.prove(|_, _| ()).judge()?;
@@ -110,10 +109,10 @@ impl Assembly {
         Ok(())
     }
 
-    /// Checks that the measures of robot.toml go together.
+    /// Checks that the dimensions in robot.toml are consistent.
     ///
     /// # Errors
-    /// Returns the first measure that does not fit.
+    /// Returns the first dimension that does not fit.
     pub fn measures_fit(&self) -> Result<(), Unfit> {
         let (robot, stack) = (self.robot(), self.stack());
         let (parts, drive) = (robot.parts(), robot.drive());
@@ -215,8 +214,7 @@ impl Assembly {
         Ok(())
     }
 
-    /// The layers of a body; for a screw without a nut only its head, since the shank cuts
-    /// its thread into a part.
+    /// The layers of a body. Of a screw without a nut only the head, since its shank cuts a thread into a part.
     fn outside_threads<'a>(&self, body: &'a Body) -> &'a [Prism] {
         let nut = body.name.replacen("screw", "nut", 1);
         match (body.kind, &body.prisms[..]) {
@@ -229,8 +227,8 @@ impl Assembly {
     }
 }
 
-/// The distance of two bodies' layers at the heights that they share, or within their
-/// holes, mm; below 0 they overlap.
+/// The least distance of two bodies' layers at the heights that they share, or inside each other's holes, mm;
+/// negative if they overlap.
 fn air(a: &[Prism], b: &[Prism]) -> f64 {
     let within = |shape: &Shape, holes: &[Shape], beside: f64| {
         let depths = holes

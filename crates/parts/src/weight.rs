@@ -4,15 +4,15 @@ use lizard_robot::Body;
 
 use crate::bill::Bill;
 
-/// Distance from the plate's middle below which a mass centre counts as in the middle, mm.
+/// Distance from the plate's middle below which the mass centre counts as in the middle, mm.
 const MIDDLE: f64 = 1.0;
-/// Tolerances within which robot.toml agrees with the bill: a share of the mass, and mm.
+/// Tolerances within which robot.toml agrees with the bill: of the mass as a share, of the centre in mm.
 const MASS_TOLERANCE: f64 = 0.05;
 const CENTRE_TOLERANCE: f64 = 3.0;
 
 impl Bill {
-    /// The values for `[body]` of robot.toml: whole grams, and the mass centre to 0.1 mm
-    /// unless it is in the middle.
+    /// The values for `[body]` in robot.toml: whole grams, and the mass centre to 0.1 mm, or zeros if it is in the
+    /// middle.
     pub fn body(&self) -> Body {
         let [ahead, left, _] = self.centre;
         let centre = match ahead.abs() < MIDDLE && left.abs() < MIDDLE {
@@ -36,15 +36,15 @@ impl Bill {
         }
     }
 
-    /// True if a robot.toml with this `[body]` is off by more than 5 % or 3 mm.
+    /// True if the `[body]` of a robot.toml differs from the bill by more than 5 % or 3 mm.
     pub fn differs(&self, body: &Body) -> bool {
         let [ahead, left, _] = self.centre;
         let error = libm::hypot(body.centre[0] - ahead, body.centre[1] - left);
         (body.mass - self.grams).abs() > MASS_TOLERANCE * self.grams || error > CENTRE_TOLERANCE
     }
 
-    /// The place of the mass centre relative to the plate's middle, such as "0.1 mm behind
-    /// and 0.1 mm to the right of".
+    /// The position of the mass centre relative to the plate's middle, such as "0.1 mm behind and 0.1 mm to the
+    /// right of".
     pub fn centre_in_words(&self) -> String {
         let [ahead, left, _] = self.centre;
         let direction = |value: f64, [positive, negative]: [&str; 2]| {

@@ -1,8 +1,7 @@
-//! Eight servos sweep, each at its own pace, while the LED blinks and every byte of
-//! the serial line, 115 200 baud, is echoed. The whole program of an Arduino UNO.
+//! Eight servos sweep, each at its own speed, while the LED blinks and every byte of the serial line, 115 200 baud,
+//! is echoed. This is a complete program for an Arduino UNO.
 //!
-//! Built by `make sweep`, run by the tests in the simulated UNO, which measures every
-//! pulse.
+//! `make sweep` builds it; the tests run it in the simulated UNO, which measures every pulse.
 
 #![no_std]
 #![no_main]
@@ -14,7 +13,7 @@ use panic_halt as _;
 use servo_pulses::cells::Byte;
 use servo_pulses::{CYCLES_PER_US, Pin};
 
-/// Eight servos of three ports. The LED is D13, the serial line D0 and D1.
+/// Eight servos on three ports. The LED is D13, the serial line D0 and D1.
 const PINS: [Pin; 8] = [
     pin(2),
     pin(3),
@@ -34,18 +33,17 @@ const fn pin(number: u8) -> Pin {
 }
 
 mod servos {
-    // Pins that are connected while the program runs; `engine!(super::PINS)` would have
-    // them from the start.
+    // Pins that are connected at run time. `engine!(super::PINS)` would set them at compile time.
     servo_pulses::engine!(later: 8);
 }
 
-/// A ring buffer, and the count of bytes received, modulo 256. The handler advances the count, and
-/// main follows it.
+/// A ring buffer and the number of bytes received, modulo 256. The handler increments the number; main catches up
+/// with it.
 static RING: [Byte; 16] = [const { Byte::new(0) }; 16];
 static RECEIVED: Byte = Byte::new(0);
 
-/// The width of a servo in a frame, cycles: a triangle wave from 1000 to 2000 us; each servo has
-/// its own step per frame.
+/// The width of a servo's pulse in a frame, in cycles: a triangle wave from 1000 to 2000 us. Each servo has its own
+/// step per frame.
 fn width(servo: u8, frame: u16) -> u16 {
     let step = 16 * u16::from(servo) + 5;
     let ramp = frame.wrapping_mul(step) % 32_000;
@@ -57,7 +55,7 @@ fn width(servo: u8, frame: u16) -> u16 {
 fn main() -> ! {
     // SAFETY: nothing has run before this but the boot loader.
     let chip = unsafe { Peripherals::steal() };
-    // 16 MHz / 8 / (16 + 1) = 117 647 baud, as the boot loader has it; 8N1.
+    // 16 MHz / 8 / (16 + 1) = 117 647 baud, the same as the boot loader's; 8N1.
     chip.USART0.ucsr0a.write(|w| w.u2x0().set_bit());
     chip.USART0.ubrr0.write(|w| w.bits(16));
     chip.USART0
@@ -79,7 +77,7 @@ fn main() -> ! {
             }
             servos::submit(widths);
             frame = frame.wrapping_add(1);
-            // A toggle by one instruction: PORTB has servo pins, too.
+            // Toggles the LED in one instruction, because PORTB also has servo pins.
             if tick & 15 == 0 {
                 // SAFETY: a one in this register toggles a pin of PORTB.
                 unsafe { chip.PORTB.pinb.write(|w| w.bits(1 << 5)) };

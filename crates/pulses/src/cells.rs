@@ -1,19 +1,18 @@
-//! Bytes that main and the interrupts share.
+//! Bytes that main and the interrupt handlers share.
 //!
-//! The processor loads or stores a byte in one instruction, which no interrupt
-//! can split, so a byte with one writer needs no lock. (The compiler's atomics
-//! would do the same, but on this target they switch interrupts off around
-//! each access.) Accesses are volatile, hence made one for one and in the order
-//! written; on one core without a cache nothing else can reorder them.
+//! The processor loads or stores a byte in one instruction, which no interrupt can split, so a byte with one writer
+//! needs no lock. (The compiler's atomics would do the same, but on this target they disable interrupts around each
+//! access.) Accesses are volatile, so each one is made, in the order written. On one core without a cache nothing
+//! else can reorder them.
 
 use core::cell::UnsafeCell;
 
 use crate::pin::Pin;
 
-/// A byte that may be read and written anywhere.
+/// A byte that may be read and written from main and from interrupt handlers.
 ///
-/// Single accesses are atomic, a read and a write together are not: what depends
-/// on the old value belongs to one writer.
+/// Single accesses are atomic; a read followed by a write is not. A value that depends on the old one must have a
+/// single writer.
 pub struct Byte(UnsafeCell<u8>);
 
 // SAFETY: one core, and every access is a single one-byte load or store. No
@@ -21,7 +20,7 @@ pub struct Byte(UnsafeCell<u8>);
 unsafe impl Sync for Byte {}
 
 impl Byte {
-    /// A byte with this value.
+    /// A byte with this initial value.
     #[must_use]
     pub const fn new(value: u8) -> Self {
         Self(UnsafeCell::new(value))
@@ -42,15 +41,15 @@ impl Byte {
     }
 }
 
-/// Two bytes. An interrupt may come between them, so reader and writer need an
-/// agreement about whose turn it is.
+/// Two bytes. An interrupt may occur between their accesses, so reader and writer must agree on who has access
+/// when.
 pub struct Word {
     low: Byte,
     high: Byte,
 }
 
 impl Word {
-    /// Two bytes with this value.
+    /// Two bytes with this initial value.
     #[must_use]
     pub const fn new(value: u16) -> Self {
         let [low, high] = value.to_le_bytes();
@@ -60,7 +59,7 @@ impl Word {
         }
     }
 
-    /// The low byte, then the high one.
+    /// Reads the low byte, then the high byte.
     #[inline(always)]
     pub fn bytes(&self) -> [u8; 2] {
         [self.low.get(), self.high.get()]
@@ -81,7 +80,7 @@ impl Word {
     }
 }
 
-/// Counts faults in interrupts for main to read. Stays at 65535.
+/// A counter of faults in interrupt handlers, which main reads. It stays at 65535.
 pub struct Counter(Word);
 
 impl Default for Counter {
@@ -97,10 +96,10 @@ impl Counter {
         Self(Word::new(0))
     }
 
-    /// Counts one fault. Only in interrupts, which cannot interrupt each other.
+    /// Counts one fault. Call it only in interrupt handlers, which cannot interrupt each other.
     #[inline(always)]
     pub fn count(&self) {
-        // Byte by byte, because the common way through is then four instructions.
+        // Handled byte by byte, because the common path then takes only four instructions.
         match self.0.low.get() {
             u8::MAX => match self.0.high.get() {
                 u8::MAX => {}
@@ -113,7 +112,7 @@ impl Counter {
         }
     }
 
-    /// The count so far. Switches interrupts off for about 10 cycles.
+    /// The count so far. Disables interrupts for about 10 cycles.
     #[cfg(any(doc, target_arch = "avr"))]
     pub fn read(&self) -> u16 {
         let sreg: u8;
@@ -126,7 +125,7 @@ impl Counter {
     }
 }
 
-/// Ports and masks of these pins, and no pin after them.
+/// Ports and masks of these pins; the remaining entries are zero.
 #[must_use]
 pub const fn pins<const SERVOS: usize, const SIZE: usize>(
     pins: [Pin; SERVOS],

@@ -1,33 +1,31 @@
-//! The engine: the interrupts that open and close the slots.
+//! The pulse engine: the interrupt handlers that open and close the slots.
 
 use crate::cells::{Byte, Counter, Word};
 #[cfg(any(test, target_arch = "avr"))]
 use crate::timing::MIN_WIDTH;
 use crate::timing::{LEAD, max_width};
 
-/// The pulses of `SERVOS` servos, made of the variables that [`engine!`](crate::engine)
-/// defines. `SIZE` is `SERVOS` or the power of two above it.
+/// The pulse generator for `SERVOS` servos. It refers to the variables that [`engine!`](crate::engine) defines.
+/// `SIZE` is `SERVOS` rounded up to a power of two.
 #[derive(Clone, Copy)]
 pub struct Engine<'a, const SERVOS: usize, const SIZE: usize> {
     #[doc(hidden)]
-    /// Ports and masks of the pins, by slot. Zero, which is not a pin, until
-    /// [`Engine::connect`].
+    /// Ports and masks of the pins, by slot. They are zero, which is no pin, until [`Engine::connect`].
     pub pins: &'a [[Byte; 2]; SIZE],
     #[doc(hidden)]
-    /// Two sets of widths: the one that plays and the one that main fills.
+    /// Two sets of widths: the one that is played and the one that main fills.
     pub frames: &'a [[Word; SIZE]; 2],
     #[doc(hidden)]
-    /// The index of the frame that plays. Changed only by the handler, and only while `fresh`
-    /// is set.
+    /// The index of the frame that is played. Only the handler changes it, and only while `fresh` is set.
     pub playing: &'a Byte,
     #[doc(hidden)]
-    /// 1 when the other frame is complete and waits to be taken over. Main sets it; the
-    /// handler clears it when it takes the frame, main when it takes it back.
+    /// 1 while the other frame is complete and waits to be taken over. Main sets it. The handler clears it when it
+    /// takes the frame over, and main clears it to withdraw the frame.
     pub fresh: &'a Byte,
     #[doc(hidden)]
-    /// The plan: the number of the slot under way or, between slots, of the next. It starts
-    /// with the tick, so that main gets going at once. TIMER1_COMPB writes the plan;
-    /// TIMER1_COMPA takes a pulse out that it was late for.
+    /// The plan: the number of the current slot or, between slots, of the next one. It starts with the tick's slot,
+    /// so that main starts at once. TIMER1_COMPB writes the plan; TIMER1_COMPA removes a pulse from it whose rising
+    /// edge is late.
     pub slot: &'a Byte,
     #[doc(hidden)]
     /// The plan: the port of the pin.
@@ -36,7 +34,7 @@ pub struct Engine<'a, const SERVOS: usize, const SIZE: usize> {
     /// The plan: the bit of the pin, 0 for no pulse.
     pub mask: &'a Byte,
     #[doc(hidden)]
-    /// The plan: the count for which the falling edge is due.
+    /// The plan: the timer count at which the falling edge is due.
     pub fall: &'a Word,
     #[doc(hidden)]
     /// The pins that may go high: all, or none after [`Engine::hush`].
@@ -45,33 +43,32 @@ pub struct Engine<'a, const SERVOS: usize, const SIZE: usize> {
     /// The ticks so far, modulo 256; written only by TIMER1_COMPA.
     pub ticks: &'a Byte,
     #[doc(hidden)]
-    /// The late edges, counted in both handlers.
+    /// The number of late edges, counted in both handlers.
     pub late: &'a Counter,
 }
 
 impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
-    /// The slot without a pin.
+    /// The number of the slot without a pin.
     #[cfg(any(test, target_arch = "avr"))]
     const TICK_SLOT: u8 = SERVOS as u8;
-    /// The count at which a slot without a pulse is closed. It is late, so that main has the
-    /// longest time in the slot with the tick.
+    /// The count at which a slot without a pulse closes. It is as late as possible, so that main has the longest
+    /// time in the tick's slot.
     const CLOSE: u16 = max_width(SERVOS);
     /// The count of the falling edge in a slot without a pulse.
     #[doc(hidden)]
     pub const NO_PULSE: u16 = Self::CLOSE + LEAD as u16;
 
-    /// Hands over the widths of the next frame, in CPU cycles of 62.5 ns, in the order of
-    /// the pins; as `u16` or as a type of the program that becomes one.
+    /// Submits the widths of the next frame, in CPU cycles of 62.5 ns, in the order of the pins; as `u16` or as a
+    /// type that converts into it.
     ///
-    /// They are taken over together before the first slot opens; a second call before that
-    /// replaces the first, which is then never played: see [`Engine::is_taken`]. If none
-    /// comes, the last ones repeat. A width of 0, and any that a slot has no room for,
-    /// gives no pulse: see [`MIN_WIDTH`](crate::MIN_WIDTH) and
+    /// The engine takes them over together before the first slot opens. A second call before that replaces the
+    /// first, which is then never played: see [`Engine::is_taken`]. Without a new frame, the last widths repeat. A
+    /// width of 0, or one that does not fit into a slot, gives no pulse: see [`MIN_WIDTH`](crate::MIN_WIDTH) and
     /// [`max_width`](crate::max_width).
     #[inline(always)]
     pub fn submit<W: Into<u16>>(&self, widths: [W; SERVOS]) {
-        // Take back what has not been played. From here to the end the handler
-        // leaves `playing` alone, so the frame that is filled cannot start to play.
+        // Withdraws a frame that has not been played. Until the end of this function the handler does not change
+        // `playing`, so the frame that is being filled cannot start to play.
         self.fresh.set(0);
         let frame = &self.frames[usize::from(self.playing.get() & 1 ^ 1)];
         for (slot, width) in frame.iter().zip(widths) {
@@ -80,45 +77,43 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         self.fresh.set(1);
     }
 
-    /// True if the frame submitted last, if any, has been taken over.
+    /// True if the last submitted frame, if any, has been taken over.
     ///
-    /// Ask at every tick. False means that main was so late with the frame that it waits
-    /// for the end of this tick's slot: a servo that must not leap gets no new frame for
-    /// this tick. True at every second tick at least means that both handlers run: one
-    /// gives the tick, the other takes the frame.
+    /// Check it at every tick. False means that main submitted the frame so late that it waits for the end of this
+    /// tick's slot: then submit no new frame for this tick, if a servo must not jump. If it is true at least at
+    /// every second tick, both handlers run, since one gives the tick and the other takes the frame over.
     #[inline(always)]
     pub fn is_taken(&self) -> bool {
         self.fresh.get() == 0
     }
 
-    /// Prevents all further pulses; one in progress ends as planned, within a slot. Call it before
-    /// you reset the board, which would cut the pulse short and so send the servo to its end stop.
-    /// The tick continues. It is a single store, so it may be called anywhere, even in an
-    /// interrupt; only a reset ends the effect.
+    /// Prevents all further pulses; one in progress ends as planned, within its slot. Call it before you reset the
+    /// board, which would cut the pulse short and so drive the servo to its end stop. The tick continues. It is a
+    /// single store, so it may be called anywhere, even in an interrupt handler; only a reset undoes it.
     #[inline(always)]
     pub fn hush(&self) {
         self.allowed.set(0);
     }
 
-    /// Frames since the start, modulo 256. Steps once a frame, one slot before the next
-    /// frame's first pulse.
+    /// Frames since the start, modulo 256. It is incremented once per frame, one slot before the next frame's first
+    /// pulse.
     #[inline(always)]
     pub fn ticks(&self) -> u8 {
         self.ticks.get()
     }
 
-    /// The width of the pulse in a slot; `None` without a pulse.
+    /// The servo and the pulse width of a slot; `None` if it has no pulse.
     #[cfg(any(test, target_arch = "avr"))]
     #[inline(always)]
     fn planned_pulse(&self, slot: u8) -> Option<(usize, u16)> {
         let servo = usize::from(slot) & (SIZE - 1);
         let width = self.frames[usize::from(self.playing.get() & 1)][servo].get();
-        // Checked here, immediately before it is used.
+        // Checked here, immediately before use.
         let is_in_range = MIN_WIDTH <= width && width <= Self::CLOSE;
         (slot != Self::TICK_SLOT && is_in_range).then_some((servo, width))
     }
 
-    /// Plans the next slot, when one closes.
+    /// Plans the next slot. Called when a slot closes.
     #[cfg(any(test, target_arch = "avr"))]
     #[inline(always)]
     fn plan(&self) {
@@ -200,7 +195,7 @@ mod tests {
         }
     }
 
-    /// The plan of each slot of a frame: slot, mask and closing time.
+    /// The plan of each slot of a frame: slot, mask and falling edge.
     fn frame<const SERVOS: usize, const SIZE: usize>(
         engine: &Engine<'_, SERVOS, SIZE>,
     ) -> [(u8, u8, u16); 9] {

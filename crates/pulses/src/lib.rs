@@ -1,12 +1,11 @@
 //! Servo pulses, exact to the CPU cycle, and a steady clock: for any program on an
 //! ATmega328P (Arduino UNO, Nano, Pro Mini).
 //!
-//! A servo turns the width of a pulse into an angle, so every cycle of jitter makes the
-//! horn tremble. Interrupt latency varies with the current instruction and with other
-//! interrupts that run. The remedy is to be early and then wait. Timer1 counts CPU cycles
-//! through slots; each compare interrupt reads how late it already is, waits for the rest
-//! of [`LEAD`] and only then stores the port. Both edges wait in the same code, so every
-//! constant delay cancels, and the width is the one that was asked for.
+//! A servo turns the width of a pulse into an angle, so every cycle of jitter makes the horn tremble. Interrupt
+//! latency varies with the current instruction and with other interrupts that run. The remedy is to be early and
+//! then wait. Timer1 counts CPU cycles through slots. Each compare interrupt reads how late it already is, waits
+//! for the rest of [`LEAD`], and only then stores to the port. Both edges wait in the same code, so every constant
+//! delay cancels and the width is exact.
 //!
 //! ```text
 //! slot    0         1         2         3         4         0
@@ -18,13 +17,12 @@
 //!                                                 ^ tick   ^ next frame
 //! ```
 //!
-//! One pin is high at a time. The last slot has no pin: it opens with the tick, and just
-//! before it closes, the engine takes over the frame that main has submitted meanwhile.
-//! The length of a slot follows from the number of servos, [`slot_cycles`]: with four it
-//! is 4 ms, and a frame 20 ms to the cycle.
+//! One pin is high at a time. The last slot has no pin: it opens with the tick, and just before it closes, the
+//! engine takes over the frame that main has submitted. The length of a slot follows from the number of servos,
+//! [`slot_cycles`]: with four it is 4 ms, and a frame is 20 ms to the cycle.
 //!
-//! Each slot is planned at the end of the slot before, so that the opening interrupt has
-//! next to nothing to do before its edge.
+//! Each slot is planned at the end of the previous one, so that the opening interrupt has almost nothing to do
+//! before its edge.
 //!
 //! # Use
 //!
@@ -46,39 +44,35 @@
 //!
 //! # When not to use it
 //!
-//! The engine occupies Timer1 and pays for its precision with interrupts that wait, a few
-//! per cent of the processor. Two servos on pins 9 and 10 need neither: the timer's own
-//! compare outputs are exact without any code. It does not run on other chips or clocks.
+//! The engine occupies Timer1, and its interrupts wait for a few per cent of the processor's time. Two servos on
+//! pins 9 and 10 need neither: the timer's own compare outputs are exact without any code. The engine does not run
+//! on other chips or clocks.
 //!
 //! # An edge that cannot be on time
 //!
-//! It must not become a wrong angle:
+//! A late edge must not become a wrong angle:
 //!
-//! - A rising edge that is late is not made. The servo misses one pulse of 50 in
-//!   a second, and holds.
-//! - A falling edge cannot be dropped, and nothing can shorten a pulse that is
-//!   already too long. It is made at once, so the pulse is longer by as much as the
-//!   edge is late: 10 us, or 160 cycles, turn an SG-90 by one degree for 20 ms. If
-//!   interrupts stay off to the end of the slot, the next slot's start ends the
-//!   pulse.
+//! - A rising edge that is late is not made. The servo misses one of the 50 pulses of a second, and holds its
+//!   position.
+//! - A falling edge cannot be dropped, and nothing can shorten a pulse that is already too long. It is made at
+//!   once, so the pulse is longer by as much as the edge is late: 10 us, or 160 cycles, turn an SG-90 by one degree
+//!   for 20 ms. If interrupts stay off until the end of the slot, the start of the next slot ends the pulse.
 //! - Both are counted, in `late`.
 //!
 //! # Rules
 //!
-//! - The longest of the program's other handlers and the longest stretch with interrupts
-//!   off take less than [`LEAD`] together, less the 60 cycles that a handler here needs
-//!   itself before it reads the timer. If they take longer, the edge is late.
-//! - Handlers do not let other interrupts in. Timer1's compare interrupts are served
-//!   before Timer0's, the USART's and all later ones. INT0, INT1, PCINT, the watchdog and
-//!   Timer2 are served before Timer1: where a program uses several of them, the times of
-//!   their handlers add up.
-//! - Interrupts must never be off for 62 us, 1000 cycles. If the end of a slot is missed
-//!   in this way, the slot is played again without a pulse, and everything comes a slot
-//!   later from then on.
+//! - The longest of the program's other handlers plus the longest time with interrupts off take less than [`LEAD`]
+//!   minus 60 cycles, which a handler of the engine itself needs before it reads the timer. If they take longer,
+//!   the edge is late.
+//! - Handlers do not enable other interrupts. Timer1's compare interrupts are served before Timer0's, the USART's
+//!   and all later ones. INT0, INT1, PCINT, the watchdog and Timer2 are served before Timer1: in a program that
+//!   uses several of them, the times of their handlers add up.
+//! - Interrupts must never be off for 62 us, 1000 cycles. If the end of a slot is missed for this reason, the slot
+//!   is repeated without a pulse, and everything is one slot later from then on.
 //! - Only the two handlers touch Timer1, because all its 16-bit registers share
 //!   one TEMP byte.
-//! - All other code changes pins of the servos' ports by single `sbi` and `cbi`
-//!   instructions, which no interrupt can split.
+//! - All other code changes pins of the servos' ports only by single `sbi` and `cbi` instructions, which no
+//!   interrupt can split.
 
 #![cfg_attr(not(test), no_std)]
 #![allow(unsafe_code)] // It stores to ports and timer; each block says what it rests on.
@@ -95,15 +89,14 @@ pub use engine::Engine;
 pub use pin::Pin;
 pub use timing::{CYCLES_PER_US, LEAD, MIN_WIDTH, frame_cycles, max_width, slot_cycles};
 
-/// Makes the module in which it stands the owner of Timer1 and of the pins of one to eight
-/// servos. It then has the functions `start`, `submit`, `is_taken`, `hush`, `ticks` and
-/// `late` of [`Engine`], and the handlers of both compare interrupts.
+/// Makes the enclosing module the owner of Timer1 and of the pins of one to eight servos. The module then has the
+/// functions `start`, `submit`, `is_taken`, `hush`, `ticks` and `late` of [`Engine`], and the handlers of both
+/// compare interrupts.
 ///
-/// - `engine!(PINS)` with a constant `PINS: [Pin; N]` for pins that are known when the
-///   program is compiled.
-/// - `engine!(later: N)` for pins that are known when it runs: `connect`, too.
+/// - `engine!(PINS)` with a constant `PINS: [Pin; N]`, for pins that are known at compile time.
+/// - `engine!(later: N)` for pins that are known at run time; adds the function `connect`.
 ///
-/// Once in a program: a second one defines the same handlers, and the linker refuses it.
+/// Use it once in a program: a second one defines the same handlers, and the linker refuses it.
 #[macro_export]
 macro_rules! engine {
     (later: $servos:expr) => {
@@ -127,11 +120,11 @@ macro_rules! engine {
     };
     (@ $servos:expr, $pins:expr) => {
         const SERVOS: usize = $servos;
-        /// Tables are as long as a mask needs them.
+        /// Length of the tables: a power of two, so that a mask keeps an index in range.
         const SIZE: usize = SERVOS.next_power_of_two();
 
-        // Each a variable of its own, so that its address is part of the instruction; all
-        // zero until `start`, so that none needs a copy in flash.
+        // Each is a separate variable, so that its address is part of the instruction. All are zero until `start`,
+        // so that none needs an initial value in flash.
         static PINS: [[$crate::cells::Byte; 2]; SIZE] = $pins;
         static FRAMES: [[$crate::cells::Word; SIZE]; 2] =
             [const { [const { $crate::cells::Word::new(0) }; SIZE] }; 2];
@@ -192,14 +185,14 @@ macro_rules! engine {
             ENGINE.late()
         }
 
-        /// TIMER1_COMPA of an ATmega328P: a slot opens.
+        /// The handler TIMER1_COMPA of an ATmega328P: opens a slot.
         #[unsafe(export_name = "__vector_11")]
         extern "avr-interrupt" fn slot_opens() {
             // SAFETY: this is the handler of the compare match A.
             unsafe { ENGINE.open() }
         }
 
-        /// TIMER1_COMPB of an ATmega328P: a slot closes.
+        /// The handler TIMER1_COMPB of an ATmega328P: closes a slot.
         #[unsafe(export_name = "__vector_12")]
         extern "avr-interrupt" fn slot_closes() {
             // SAFETY: this is the handler of the compare match B.

@@ -1,7 +1,6 @@
-//! Arduino pins as registers and bits.
+//! Arduino pins as port registers and bits.
 //!
-//! The numbers printed on the board are not those of the chip, whose pins are in three
-//! ports in another order.
+//! The numbers printed on the board are not those of the chip, whose pins belong to three ports in another order.
 
 /// A pin of an Arduino UNO or Nano.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,8 +12,8 @@ pub struct Pin {
 }
 
 impl Pin {
-    /// The pin that is printed on the board as D0 to D13, or as A0 to A5 for 14 to 19;
-    /// `None` for any other number. D0 and D1 are the serial line, D13 has the LED.
+    /// The pin with this number on the board: D0 to D13, or 14 to 19 for A0 to A5; `None` for any other number. D0
+    /// and D1 are the serial line, D13 has the LED.
     #[must_use]
     pub const fn arduino(number: u8) -> Option<Self> {
         let (port, bit) = match number {
@@ -46,8 +45,8 @@ impl Pin {
 mod tests {
     use super::*;
 
-    /// The data sheet's names of the pins at the UNO's sockets D0 to D13 and A0 to A5, from the
-    /// UNO's circuit diagram.
+    /// Ports and bits of the UNO's sockets D0 to D13 and A0 to A5, from the UNO's circuit diagram, in the data
+    /// sheet's names.
     const SOCKETS: [(u8, char, u8); 20] = [
         (0, 'D', 0),
         (1, 'D', 1),

@@ -1,19 +1,19 @@
 //! The lengths of slots, frames and pulses.
 
-/// Cycles from the compare match until the handler stops waiting; the edge follows a fixed
-/// time later. At most 255, because the wait is counted in a byte.
+/// Cycles from the compare match until the handler stops waiting; the edge follows a fixed time later. At most 255,
+/// because a byte counts the wait.
 pub const LEAD: u8 = 220;
 
 /// CPU cycles in a microsecond, each counted by Timer1: the CPU runs at 16 MHz.
 pub const CYCLES_PER_US: u16 = 16;
 
-/// The shortest pulse that can be made, cycles: 62.5 us at either end of a slot are for
-/// the two handlers and whatever they have to wait for.
+/// The shortest possible pulse, cycles: 62.5 us at either end of a slot are reserved for the two handlers and for
+/// interrupts that delay them.
 pub const MIN_WIDTH: u16 = MARGIN;
 
 const MARGIN: u16 = 1_000;
 
-/// The 20 ms that a servo expects from one pulse to the next.
+/// The period of 20 ms that a servo expects between pulses, in cycles.
 const FRAME_CYCLES: u32 = 320_000;
 
 /// The shortest slot, 2.5 ms: its longest pulse, 2.4375 ms, is beyond any servo's travel.
@@ -22,12 +22,12 @@ const MIN_SLOT_CYCLES: u32 = 40_000;
 /// The longest slot, 4 ms, as with four servos.
 const MAX_SLOT_CYCLES: u32 = 64_000;
 
-/// Cycles of a slot with this many servos: 20 ms shared by their slots and one slot without a
-/// pin, which opens with the tick. But 2.5 ms at least, so that with eight servos a frame takes
-/// 22.5 ms, and 4 ms at most, so that it takes 16 ms with three.
+/// Cycles of a slot with this many servos. The servos' slots and one slot without a pin, which opens with the tick,
+/// share 20 ms. A slot is at least 2.5 ms, so with eight servos a frame takes 22.5 ms; and at most 4 ms, so with
+/// three servos it takes 16 ms.
 ///
 /// # Panics
-/// If there is no servo or more than eight, while the program is compiled.
+/// Panics, at compile time, if there are no servos or more than eight.
 #[must_use]
 pub const fn slot_cycles(servos: usize) -> u16 {
     assert!(
@@ -35,7 +35,7 @@ pub const fn slot_cycles(servos: usize) -> u16 {
         "an engine has one to eight servos"
     );
     let even = FRAME_CYCLES / (servos as u32 + 1);
-    // With fewer than four servos a slot would not fit 16 bits.
+    // With fewer than four servos an even share of the frame would not fit 16 bits.
     if even > MAX_SLOT_CYCLES {
         return MAX_SLOT_CYCLES as u16;
     }
@@ -54,7 +54,7 @@ pub const fn frame_cycles(servos: usize) -> u32 {
     (servos as u32 + 1) * slot_cycles(servos) as u32
 }
 
-/// The longest pulse that can be made, cycles.
+/// The longest possible pulse, cycles.
 ///
 /// # Panics
 /// Panics as [`slot_cycles`] does.

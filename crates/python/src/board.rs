@@ -22,7 +22,7 @@ impl Board {
 
     /// Runs a frame after these bytes of the serial line, and returns the text of the robot.
     fn frame(&self, bytes: &[u8]) -> String {
-        // One by one, as on a serial line.
+        // The firmware gets them one by one, as from a serial line.
         let mut running = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         for byte in bytes {
             running.board.send(&[*byte]);

@@ -1,11 +1,10 @@
-//! The part of the Python package `lizard` that is in Rust: it turns arrays of numpy into calls
-//! of the crates.
+//! The Rust part of the Python package `lizard`: converts numpy arrays into calls of the crates.
 //!
-//! The users' classes are in `lizard/*.py`, where their shapes and units are documented. Here
-//! poses are rows of an array of two dimensions.
+//! The users' classes are in `lizard/*.py`, which documents their shapes and units. Here poses are rows of a
+//! two-dimensional array.
 //!
 //! # When not to use it
-//! From Rust take `lizard-kinematics` and `lizard-robot` directly.
+//! From Rust, use `lizard-kinematics` and `lizard-robot` directly.
 
 mod board;
 mod robot;

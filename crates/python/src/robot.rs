@@ -1,4 +1,4 @@
-//! A checked robot.toml, computed for many poses at a time.
+//! A checked robot.toml and computations with it, for many poses at a time.
 
 use lizard_host::flash::file;
 use lizard_kinematics::{Check, End, Solution, Vector};
@@ -40,7 +40,7 @@ impl Robot {
         checked(py, py.detach(|| lizard_robot::Robot::load(path)))
     }
 
-    /// The same body with `stand` and the gait of this table alone.
+    /// The same robot with `stand` and the gait of this table as its only gaits.
     fn with_gait(&self, py: Python<'_>, table: &str) -> PyResult<Self> {
         checked(py, py.detach(|| self.0.with_gait(table)))
     }
@@ -53,7 +53,7 @@ impl Robot {
         self.0.neutral().into()
     }
 
-    /// The servos' travel from neutral, deg: the least and the most of each.
+    /// The range of the servos' travel from neutral, deg: smallest and largest of each.
     fn travel(&self) -> [(f64, f64); 4] {
         self.0.servos().map(|servo| servo.travel())
     }
@@ -69,7 +69,7 @@ impl Robot {
         rows(py, &poses, |angles| self.row(angles))
     }
 
-    /// K and K* of poses, each row after row: 8 x 4 and 8 x 8 numbers, NaN if there is no solution.
+    /// K and K* of poses, each row by row: 8 x 4 and 8 x 8 numbers, NaN if there is no solution.
     fn matrices<'py>(&self, py: Python<'py>, poses: PyReadonlyArray2<'py, f64>) -> Rows<'py> {
         rows(py, &poses, |angles: [f64; 4]| {
             let mut row = [f64::NAN; 96];
@@ -82,8 +82,8 @@ impl Robot {
         })
     }
 
-    /// The angles of the left and the right servo of an end for points of it (mm, chassis frame),
-    /// in all four working modes; NaN where a point is out of reach.
+    /// The left and right servo angles of an end for given positions of its point (mm, chassis frame), in all four
+    /// working modes; NaN where a point is out of reach.
     fn inverse<'py>(
         &self,
         py: Python<'py>,
@@ -107,7 +107,7 @@ impl Robot {
         })
     }
 
-    /// The messages for what keeps the robot from a pose; none if it is safe.
+    /// The reasons why a pose is not safe, as messages; empty if it is safe.
     fn reasons(&self, angles: [f64; 4]) -> Vec<String> {
         match self.0.lizard().solve(&angles.into()) {
             Ok(solution) => verdict::reasons(&self.0, &solution),
@@ -172,8 +172,8 @@ impl Robot {
         ))
     }
 
-    /// The movement of one cycle: mm forward, mm to the left, deg counter-clockwise; NaN for what
-    /// depends on a tie of two feet against two.
+    /// The movement of one cycle: mm forward, mm to the left, deg counter-clockwise; NaN for the parts that depend
+    /// on a tie of two feet against two.
     fn predict(&self, py: Python<'_>, name: &str, with_servos: bool) -> PyResult<[f64; 3]> {
         let gait = self.find(name)?;
         let Prediction {

@@ -1,7 +1,7 @@
-//! The reference of all keys, docs/robot-toml.md, made from the reader.
+//! The reference of all keys, docs/robot-toml.md, generated from the reader.
 //!
-//! keys.txt has the meaning of each key. Its range, unit and default are those that the reader
-//! checks, noted while it reads a robot with every table.
+//! keys.txt has the meaning of each key. Its range, unit and default are those that the reader checks; they are
+//! recorded while it reads a robot with every table.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -14,7 +14,7 @@ use crate::robot::KEYS;
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/robot-toml.md");
 const MARK: &str = "<!-- keys of robot.toml -->\n";
 
-/// A robot with every table, and with each key whose default the reader does not say.
+/// A robot with every table, and with each key whose default the reader does not record.
 fn robot() -> String {
     let more = "
         [leg.drive]\nkind = \"strut\"
@@ -43,8 +43,8 @@ fn robot() -> String {
         .collect::<String>()
 }
 
-/// The name of a key in keys.txt: names that the author gives and the four servos, legs and ends
-/// are one.
+/// The name of a key in keys.txt, where all names chosen by the author, all four servos or legs, and both ends
+/// share one entry.
 fn plain(key: &str) -> String {
     let names: Vec<&str> = key.split('.').collect();
     let plain = names.iter().enumerate().map(|(index, name)| {
@@ -61,14 +61,14 @@ fn plain(key: &str) -> String {
     plain.collect::<Vec<_>>().join(".")
 }
 
-/// The reader's own words for a key: values and default.
+/// The values and the default of a key, as the reader records them.
 #[derive(Default)]
 struct Words {
     values: Option<String>,
     default: Option<String>,
 }
 
-/// All keys that the reader knows, tables left out.
+/// All keys that the reader knows, without tables.
 fn keys() -> BTreeMap<String, Words> {
     READS.with_borrow_mut(Vec::clear);
     read(&robot()).expect("a robot with every key");
@@ -90,7 +90,7 @@ fn keys() -> BTreeMap<String, Words> {
     }
     let is_table = |read: &&(String, KeyRead)| matches!(read.1, KeyRead::Table);
     for (table, _) in reads.iter().filter(is_table) {
-        // Harmonics are keys as well as tables.
+        // Lists of harmonics are recorded as tables, but are keys, too.
         if !table.ends_with(".x") && !table.ends_with(".y") {
             keys.remove(&plain(table));
         }
@@ -178,7 +178,7 @@ fn the_page_of_keys_is_what_the_reader_checks() {
     }
 }
 
-/// Reads measurements, gaits and routines, but makes no tables of them, which takes long.
+/// Reads measures, gaits and routines, but does not compute their tables, which would take long.
 fn read(text: &str) -> Result<(), Error> {
     file::parse(text, |table| {
         let root = Section::root(table, &KEYS)?;
@@ -198,7 +198,7 @@ fn a_key_may_be_left_out_if_and_only_if_the_reference_says_so() {
             "" => 0,
             _ => match text.find(&format!("\n[{}]", table.replace("NAME", "walk"))) {
                 Some(start) => start + 1,
-                // Written as the value of a key.
+                // The table is written as the value of a key.
                 None => continue,
             },
         };

@@ -1,4 +1,4 @@
-//! A complete robot.toml: measures, gaits, and the section of flash that is made of them.
+//! A complete robot.toml: measures, gaits, and the section of flash made from them.
 
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
@@ -28,7 +28,7 @@ pub struct Robot {
     content: Content,
     /// The section without the maps of certified cells, as the core on a host reads it.
     section: Arc<[u8]>,
-    /// The core's robot in memory that is never freed; made at the first use.
+    /// The core's view of the robot, in memory that is never freed; made at the first use.
     firmware: OnceLock<CoreRobot>,
 }
 
@@ -45,8 +45,8 @@ impl Robot {
     /// Reads and checks a file.
     ///
     /// # Errors
-    /// Fails if it cannot be read, is longer than [`crate::MAX_FILE_BYTES`], is not UTF-8 text, or
-    /// holds a mistake.
+    /// Fails if the file cannot be read, is longer than [`crate::MAX_FILE_BYTES`], is not UTF-8 text, or contains a
+    /// mistake.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
         let file = path.display().to_string();
@@ -56,22 +56,22 @@ impl Robot {
         }
     }
 
-    /// Reads and checks the text of a robot.toml. A byte order mark at the start is skipped.
+    /// Reads and checks the text of a robot.toml. Skips a byte order mark at the start.
     ///
     /// # Errors
-    /// Fails if the text holds a mistake.
+    /// Fails if the text contains a mistake.
     pub fn parse(text: &str) -> Result<Self, Error> {
         file::parse(text, Self::read)
     }
 
-    /// Gives the same body `stand` and one other gait, whose table of robot.toml this is, and
-    /// checks it. The other gaits are left out.
+    /// The same robot with only two gaits: `stand`, and the one that this table of robot.toml defines, which is
+    /// checked.
     ///
     /// # Errors
-    /// Fails if the table holds a mistake, or the gait breaks a limit.
+    /// Fails if the table contains a mistake, or if the gait breaks a limit.
     pub fn with_gait(&self, table: &str) -> Result<Self, Error> {
         const STAND: &str = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
-        // Alone first: a mistake of syntax may name a second line.
+        // Parsed alone first, because the message of a syntax error may cite a second line number.
         file::parse(table, |_| Ok(()))?;
         let robot = file::parse(&format!("{STAND}{table}"), |table| {
             let root = Section::root(table, &["gait"])?;
@@ -101,7 +101,7 @@ impl Robot {
         let volts = robot.servo_type().volts;
         let lines = efforts.iter().map(|effort| effort.line_share(1.0, 1.0));
         rail.slow_down(lines.fold(0.0, f64::max), TIGHT, volts);
-        // A share of the line on a supply is the whole line on that share of the supply.
+        // Using a share of the line at one supply is the same as using the whole line at that share of the supply.
         let [_, stop, _] = rail.thresholds;
         let paces = efforts
             .iter()
@@ -110,7 +110,7 @@ impl Robot {
         Self::with_measures(name, measures, &root)
     }
 
-    /// Reads and checks the gaits of a body, and makes its tables.
+    /// Reads and checks the gaits of a robot with these measures, and computes its tables.
     fn with_measures(name: &str, measures: Measures, root: &Section) -> Checked<Self> {
         let gaits = define::gaits(root, &measures)?;
         let names: Vec<&str> = gaits.iter().map(|gait| gait.name.as_str()).collect();
@@ -145,14 +145,14 @@ impl Robot {
         })
     }
 
-    /// The robot's name, which the firmware prints at its start.
+    /// The robot's name, which the firmware prints when it starts.
     pub fn name(&self) -> &str {
         &self.content.name
     }
 
-    /// Makes the robot's section of flash, at most [`SPACE`] bytes, with the maps of certified
-    /// cells, which take a moment to prove. Without room for the maps they are left out, and
-    /// the firmware measures every pose.
+    /// Makes the robot's section of flash, at most [`SPACE`] bytes, with the maps of certified cells, whose proof
+    /// takes a moment. If there is no room for the maps, they are left out, and the firmware computes the distance
+    /// from the limits at every pose.
     pub fn section(&self) -> Vec<u8> {
         self.with_maps().unwrap_or_else(|| self.content.section())
     }
@@ -171,7 +171,7 @@ impl Robot {
         6_000 + names.map(|name| 1_400 + 92 * name.len()).sum::<usize>()
     }
 
-    /// Makes the section with the maps, unless that is too long.
+    /// Makes the section with the maps; `None` if it is too long.
     fn with_maps(&self) -> Option<Vec<u8>> {
         let CellMaps {
             head,
@@ -186,7 +186,7 @@ impl Robot {
         Some(content.section()).filter(|section| section.len() <= usize::from(SPACE))
     }
 
-    /// The robot's numbers as its section has them.
+    /// The robot's numbers as stored in its section.
     pub const fn content(&self) -> &Content {
         &self.content
     }
@@ -201,12 +201,12 @@ impl Robot {
         &self.measures.servos
     }
 
-    /// The type of the servos, and their supply.
+    /// The type of the servos, with their supply.
     pub fn servo_type(&self) -> &ServoType {
         &self.measures.servo_type
     }
 
-    /// The supplies of the servos for which figures are given, V: their own, and those at which the
+    /// The supply voltages of the servos for which the reports give figures, V: their own, and those at which the
     /// robot slows down and stops.
     pub fn reported_volts(&self) -> [f64; 3] {
         let supplies = self.supplies();
@@ -219,12 +219,12 @@ impl Robot {
         self.motors_at(self.servo_type().volts)
     }
 
-    /// The servos' motors and the friction of the joints, at a supply in V.
+    /// The servos' motors and the friction of the joints, at a supply voltage in V.
     pub fn motors_at(&self, volts: f64) -> Motors {
         self.motors_of(self.servo_type(), volts)
     }
 
-    /// The motors of servos of another type, at a supply in V, and the friction of the joints.
+    /// The motors of another type of servo at a supply voltage in V, and the friction of the joints.
     pub fn motors_of(&self, servo: &ServoType, volts: f64) -> Motors {
         let of = |own: &Servo| servo.motor(volts, own.us_per_degree);
         Motors {
@@ -238,7 +238,7 @@ impl Robot {
         &self.measures.limits
     }
 
-    /// Limits of the servos' speed.
+    /// Speed limits of the servos.
     pub fn pace(&self) -> &SpeedLimits {
         &self.measures.pace
     }
@@ -248,12 +248,12 @@ impl Robot {
         &self.measures.supplies
     }
 
-    /// The pins of the inputs.
+    /// The pins of the inputs, if any.
     pub fn inputs(&self) -> &Inputs {
         &self.measures.inputs
     }
 
-    /// Measures of the parts to print and to buy.
+    /// Dimensions of the parts to print and to buy.
     pub fn parts(&self) -> &Parts {
         &self.measures.parts
     }
@@ -272,12 +272,12 @@ impl Robot {
         }
     }
 
-    /// A slotted strut of this robot's size with this spring from a shop.
+    /// A slotted strut of this robot's size with this coil spring.
     pub fn strut_of(&self, coil: &Coil) -> Strut {
         measures::of_coil(self.legs(), self.measures.neutral(), self.parts(), coil)
     }
 
-    /// The length, inside its hooks, of a spring that is mounted in a strut, mm.
+    /// The length, inside its hooks, of a spring mounted in a strut, mm.
     pub fn hung(&self) -> f64 {
         measures::hung(self.legs(), self.parts())
     }
@@ -307,42 +307,41 @@ impl Robot {
         &self.routines
     }
 
-    /// Finds a routine by its name, with dashes or blanks between its words.
+    /// Finds a routine by its name, with dashes or blanks between the words.
     pub fn routine(&self, name: &str) -> Option<&Routine> {
         let name = name.replace(' ', "-");
         self.routines.iter().find(|routine| routine.name() == name)
     }
 
-    /// Finds a gait by its name, with dashes or blanks between its words.
+    /// Finds a gait by its name, with dashes or blanks between the words.
     pub fn gait(&self, name: &str) -> Option<&CheckedGait> {
         let name = name.replace(' ', "-");
         self.gaits.iter().find(|gait| gait.name() == name)
     }
 
-    /// Finds the gait of a line of the console, which may have a number of cycles behind the name.
+    /// Finds the gait of a console line, in which a number of cycles may follow the name.
     pub fn gait_of_line(&self, line: &str) -> Option<&CheckedGait> {
         let name = line.trim_end_matches(|c: char| c.is_ascii_digit());
         let counted = || name.ends_with(' ').then(|| self.gait(name.trim_end()))?;
         self.gait(line).or_else(counted)
     }
 
-    /// The core's view of this robot, on a host: without the maps of certified cells, which
-    /// change no decision.
+    /// The core's view of this robot on a host, without the maps of certified cells, which change no decision.
     pub fn core(&self) -> lizard_core::numbers::robot::Robot<'_> {
-        // It was opened when the robot was read.
+        // The section was validated when the robot was read, so this does not fail.
         lizard_core::numbers::robot::Robot::unchecked(Region::new(&self.section))
             .unwrap_or(lizard_core::numbers::robot::Robot::NONE)
     }
 
-    /// The core's view of this robot for a simulation of the core. Its section stays in memory
-    /// until the program ends; that of [`Robot::core`] does not.
+    /// The core's view of this robot for a simulation of the core. Its section stays in memory until the program
+    /// ends; that of [`Robot::core`] does not.
     pub fn firmware(&self) -> &CoreRobot {
         self.firmware
             .get_or_init(|| CoreRobot::unchecked(flash(&self.section)).unwrap_or(CoreRobot::NONE))
     }
 
-    /// The robot with routines for a floor without walls, and without anybody who presses: a wait
-    /// takes a frame, a gait that only a contact ends one cycle, and every other step its count or time.
+    /// The robot with its routines changed as if no contact ever closed: a wait takes one frame, a gait that only a
+    /// contact ends takes one cycle, and every other step its count or time.
     #[must_use]
     pub fn without_contacts(&self) -> Self {
         let mut content = self.content.clone();
@@ -362,7 +361,7 @@ impl Robot {
         }
     }
 
-    /// Computes the cells in which the guard is proved to accept every pose.
+    /// Computes the cells in which the guard is proven to accept every pose.
     pub fn cell_maps(&self) -> CellMaps {
         CellMaps::new(self.lizard(), &self.content)
     }
@@ -372,8 +371,8 @@ impl Robot {
         self.measures.neutral().into()
     }
 
-    /// Solves the robot at servo angles (deg, chassis frame, servo order), if the servos reach
-    /// this pose and its limits allow it.
+    /// Solves the robot at servo angles (deg, chassis frame, servo order). Returns `None` if a servo does not reach
+    /// its angle or the pose breaks a limit.
     pub fn accepted(&self, angles: [f64; 4]) -> Option<Solution> {
         let mut servos = self.servos().iter().zip(angles);
         if !servos.all(|(servo, angle)| servo.reaches(angle)) {
@@ -383,16 +382,15 @@ impl Robot {
         self.limits().allow(&solution).then_some(solution)
     }
 
-    /// Converts servo angles (deg, chassis frame) to the legs' sweeps (deg, foot forward
-    /// positive), both in servo order.
+    /// Converts servo angles (deg, chassis frame) to the legs' sweeps (deg, positive if the foot is forward), both
+    /// in servo order.
     pub fn sweeps(&self, angles: [f64; 4]) -> [f64; 4] {
         let neutral = self.measures.neutral();
         std::array::from_fn(|i| FORWARD[i] * wrap(angles[i] - neutral[i]))
     }
 
-    /// Predicts the movement of the body while the servos take these angles (deg, chassis
-    /// frame, servo order) one after another, by the contact model with rigid legs; also if it
-    /// depends on ties.
+    /// Predicts the movement of the body while the servos take these angles (deg, chassis frame, servo order) one
+    /// after another, with the contact model and rigid legs. It returns a result even if it depends on ties.
     pub fn travel(&self, angles: impl IntoIterator<Item = [f64; 4]>) -> Travel {
         self.ground()
             .rigid()
@@ -405,13 +403,13 @@ impl Robot {
     }
 }
 
-/// The tables of the file, and the one key outside of them.
+/// The top-level keys of the file: its tables, and `name`.
 pub(crate) const KEYS: [&str; 14] = [
     "name", "links", "leg", "servo", "joints", "limits", "supply", "input", "body", "feet",
     "ground", "parts", "gait", "routine",
 ];
 
-/// Reads the robot's name at the top of the file.
+/// Reads the robot's name from the top of the file.
 fn name<'a>(root: &Section<'a>) -> Checked<&'a str> {
     if !root.has("name") {
         return Ok("robot");
@@ -426,7 +424,7 @@ fn name<'a>(root: &Section<'a>) -> Checked<&'a str> {
     Ok(name)
 }
 
-/// The mistake of a robot whose section is too large, with the bytes of its waves and gaits.
+/// The mistake of a robot whose section is too large, with the bytes that waveforms, gaits and routines take.
 fn too_large(content: &Content, bytes: usize) -> Fault {
     let over = bytes - usize::from(SPACE);
     let waves = content.waves.len();

@@ -1,4 +1,4 @@
-//! Robots of the files in robots/, for the unit tests.
+//! Helpers for unit tests that read the robot files in robots/.
 
 use crate::{Error, Robot};
 

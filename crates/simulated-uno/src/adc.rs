@@ -1,15 +1,14 @@
-//! The voltages that the ADC measures.
+//! The voltages that the ADC measures: the bandgap reference and the analogue pins.
 
 use crate::ffi;
 use crate::{Pin, Uno};
 
 impl Uno {
-    /// Sets the bandgap reference, mV; 1100 unless set. The data sheet allows 1000 to
-    /// 1200, and each chip has a constant value of its own. [`Fidelity::Stock`](crate::Fidelity)
-    /// always has 1100.
+    /// Sets the voltage of the bandgap reference, mV; 1100 by default. The data sheet allows 1000 to 1200, and each
+    /// chip has its own constant value. With [`Fidelity::Stock`](crate::Fidelity) it is always 1100.
     ///
     /// # Panics
-    /// Beyond 1000 to 1200.
+    /// If the voltage is not within 1000 to 1200 mV.
     pub fn set_bandgap_mv(&mut self, mv: f64) {
         assert!(
             (1000.0..=1200.0).contains(&mv),
@@ -19,8 +18,8 @@ impl Uno {
         unsafe { ffi::uno_set_bandgap(self.raw, mv) }
     }
 
-    /// Sets the voltage at one of A0 to A5 from now on, mV; 0 unless set. It does not change
-    /// the pin's digital level.
+    /// Sets the voltage at one of A0 to A5 from now on, mV; 0 by default. It does not change the pin's digital
+    /// level.
     ///
     /// # Panics
     /// If the pin is not one of A0 to A5.

@@ -1,11 +1,11 @@
-//! Little AVR programs, compiled when a test runs.
+//! Compiler for small AVR programs that a test contains as text.
 //!
-//! A test of a driver, or of the simulator itself, needs a program of ten lines whose
-//! timing follows from the data sheet by counting. It is easiest to read next to the
-//! expected result. Needs Debian's `gcc-avr` and `avr-libc`.
+//! A test of a driver, or of the simulator itself, needs a program of about ten lines whose timing follows from the
+//! data sheet by counting. Such a program is easiest to read next to the expected result. Needs Debian's `gcc-avr`
+//! and `avr-libc`.
 //!
-//! All functions but [`run`] panic with avr-gcc's own message if it refuses the program,
-//! because a test can do nothing else.
+//! All functions except [`run`] panic with avr-gcc's own message if it rejects the program, because a test can do
+//! nothing else.
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -16,14 +16,14 @@ use crate::Image;
 /// Compiles C (or, inside `asm`, assembly) with avr-gcc for the UNO's chip.
 ///
 /// # Panics
-/// If avr-gcc is missing or refuses the program; the message has avr-gcc's own.
+/// If avr-gcc is missing or rejects the program; then the message is avr-gcc's own.
 #[must_use]
 pub fn c(source: &str) -> Image {
     build(source, "c", &["-O2", "-std=gnu11"])
 }
 
-/// Assembles a complete program; nothing else is linked, so flash address 0 is its
-/// first instruction. Headers of C are included by `#include`, not by `.include`.
+/// Assembles a complete program. Nothing else is linked, so the first instruction is at flash address 0. The source
+/// includes C headers by `#include`, not by `.include`.
 ///
 /// # Panics
 /// See [`c`].
@@ -32,7 +32,7 @@ pub fn assembler(source: &str) -> Image {
     assembler_at(0, source)
 }
 
-/// [`assembler`] with its first instruction at a byte address in flash.
+/// Assembles a program as [`assembler`] does, with its first instruction at a byte address in flash.
 ///
 /// # Panics
 /// See [`c`].
@@ -47,11 +47,10 @@ pub fn assembler_at(address: u16, source: &str) -> Image {
     )
 }
 
-/// Runs avr-gcc for the UNO's chip at 16 MHz, with these flags and input files, so that it
-/// writes `output`.
+/// Runs avr-gcc for the UNO's chip at 16 MHz with these flags and input files, and writes the result to `output`.
 ///
 /// # Errors
-/// Returns avr-gcc's message if it refuses the program.
+/// Returns avr-gcc's message if it rejects the program.
 ///
 /// # Panics
 /// If avr-gcc is missing.

@@ -1,13 +1,12 @@
-//! A board as it is sold: a boot loader in the last part of flash, which the chip starts after
-//! a reset, and a program that the boot loader received over the serial line.
+//! A board as it is sold: its flash ends with a boot loader, which the chip starts after a reset and which receives
+//! the program over the serial line.
 
 use crate::ffi;
 use crate::{FLASH_SIZE, Fidelity, Image, Uno};
 
 impl Uno {
-    /// A board with nothing in its flash but a boot loader, at the moment of
-    /// power-on. The boot reset vector (fuse BOOTRST) is the loader's first
-    /// byte.
+    /// Returns a board with only a boot loader in its flash, at the moment of power-on. The boot reset vector (fuse
+    /// BOOTRST) is the loader's first byte.
     #[must_use]
     pub fn with_boot_loader(loader: Image, fidelity: Fidelity) -> Self {
         let start = loader.code_start();
@@ -18,7 +17,7 @@ impl Uno {
         uno
     }
 
-    /// The contents of all of flash, the boot loader included. A byte never written is 0xff.
+    /// The contents of all of flash, including the boot loader. A byte that was never written is 0xff.
     #[must_use]
     pub fn flash(&self) -> &[u8] {
         // SAFETY: `raw` is valid, see `Uno`. The chip has `FLASH_SIZE` bytes of flash, which
@@ -26,10 +25,10 @@ impl Uno {
         unsafe { std::slice::from_raw_parts(ffi::uno_flash(self.raw), FLASH_SIZE as usize) }
     }
 
-    /// Changes bytes of flash without the program's doing, as worn-out cells do.
+    /// Changes bytes of flash without the program's involvement, as worn-out cells do.
     ///
     /// # Panics
-    /// If they do not fit into flash.
+    /// If the bytes do not fit into flash.
     pub fn set_flash(&mut self, address: u16, bytes: &[u8]) {
         let start = usize::from(address);
         // SAFETY: as in `flash`, and `self` is borrowed nowhere else.
@@ -39,8 +38,8 @@ impl Uno {
         flash[start..start + bytes.len()].copy_from_slice(bytes);
     }
 
-    /// Clears the record of received bytes, [`Uno::received_by_uno`], which
-    /// would grow for as long as the UNO runs.
+    /// Clears the record of received bytes, [`Uno::received_by_uno`]. It would otherwise grow for as long as the
+    /// UNO runs.
     pub(crate) fn forget_received(&mut self) {
         self.clear(ffi::uno_received);
     }

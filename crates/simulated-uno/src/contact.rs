@@ -4,8 +4,8 @@ use crate::ffi;
 use crate::{Pin, Uno};
 
 impl Uno {
-    /// Closes or opens a contact between a pin and ground, such as a push button. As an input the pin
-    /// is low while it is closed, and high while it is open and the pin's pull-up is on.
+    /// Closes or opens a contact between a pin and ground, such as a push button. An input pin is low while its
+    /// contact is closed, and high while the contact is open and the pin's pull-up is on.
     pub fn set_contact(&mut self, pin: Pin, is_closed: bool) {
         // PIND, PINB and PINC (data sheet, 14.4).
         let (address, bit) = match pin.number() {

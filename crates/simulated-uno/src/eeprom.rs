@@ -1,8 +1,7 @@
-//! The EEPROM, and power that fails while it is written.
+//! The EEPROM, and power failures while it is written.
 //!
-//! A byte takes 3.4 ms. A firmware that loses power meanwhile must find either its old
-//! or its new settings at the next start, so a test must be able to cut the power
-//! in any byte and choose the bits that this byte is left with.
+//! Programming a byte takes 3.4 ms. If a firmware loses power meanwhile, it must find either its old or its new
+//! settings at the next start. So a test can cut the power in any byte and choose the bits that remain in it.
 
 use crate::Uno;
 use crate::ffi;
@@ -10,7 +9,7 @@ use crate::ffi;
 /// The size of an ATmega328P's EEPROM, bytes.
 pub const EEPROM_SIZE: usize = 1024;
 
-/// The kind of a programming operation; EEPM1:0 of the data sheet's table 8-1.
+/// The kind of a programming operation: EEPM1:0 in table 8-1 of the data sheet.
 // `enum eeprom_mode` of the shim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
@@ -28,16 +27,16 @@ pub enum EepromMode {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(C)]
 pub struct EepromOperation {
-    /// The cycle at which it started.
+    /// The cycle at which the operation started.
     pub cycle: u64,
     /// The byte's address, 0 to 1023.
     pub address: u16,
     /// The kind of the operation.
     pub mode: EepromMode,
-    /// The byte's value before it.
+    /// The byte's value before the operation.
     pub old: u8,
-    /// The byte's value after it; while the operation is in progress, the value that the byte
-    /// will have if the power does not fail.
+    /// The byte's value after the operation. While the operation is in progress: the value that the byte will have
+    /// if the power does not fail.
     pub new: u8,
     /// True if the power failed during the operation.
     pub is_torn: bool,
@@ -48,17 +47,16 @@ pub struct EepromOperation {
 pub enum PowerCut {
     /// At a cycle.
     AtCycle(u64),
-    /// In the middle of the time in which a byte is erased, in the operation that starts
-    /// after this number of others: 0 is the next one.
+    /// In the middle of the erase phase, in the operation that starts after this number of others: 0 is the next
+    /// one.
     InErase(u64),
-    /// In the middle of the time in which a byte is written, counted likewise. An operation that
-    /// only erases or only writes is cut in its middle by either.
+    /// In the middle of the write phase, counted in the same way. An operation that only erases or only writes is
+    /// cut in its middle by both `InErase` and `InWrite`.
     InWrite(u64),
 }
 
 impl Uno {
-    /// The contents of the EEPROM. A byte that is being programmed still has its
-    /// old value.
+    /// The contents of the EEPROM. A byte that is being programmed still has its old value.
     #[must_use]
     pub fn eeprom(&self) -> [u8; EEPROM_SIZE] {
         // SAFETY: `raw` is valid, see `Uno`. simavr's buffer has `EEPROM_SIZE` bytes as long as
@@ -66,31 +64,30 @@ impl Uno {
         unsafe { *ffi::uno_eeprom(self.raw).cast() }
     }
 
-    /// Sets the contents, which may be done at any time. Those of a new board are all 0xff. They
+    /// Sets the contents of the EEPROM; allowed at any time. On a new board, all bytes are 0xff. The contents
     /// survive every reset and power cycle.
     pub fn set_eeprom(&mut self, contents: &[u8; EEPROM_SIZE]) {
         // SAFETY: as in `eeprom`, and `self` is borrowed nowhere else.
         unsafe { *ffi::uno_eeprom(self.raw).cast() = *contents }
     }
 
-    /// The programming operations started so far; empty in [`Fidelity::Stock`](crate::Fidelity).
+    /// The programming operations started so far; always empty with [`Fidelity::Stock`](crate::Fidelity).
     #[must_use]
     pub fn eeprom_operations(&self) -> Vec<EepromOperation> {
         self.list(ffi::uno_eeprom_operations)
     }
 
-    /// Makes the power fail, once: the run ends with [`State::Off`](crate::State), and
-    /// every pin is low. [`Uno::power_cycle`] restores the power.
+    /// Makes the power fail once. The run ends with [`State::Off`](crate::State), and every pin is low.
+    /// [`Uno::power_cycle`] restores the power.
     ///
-    /// `ones` chooses the value that the byte of an operation in progress is left with. During the
-    /// erase, zeros of the old value become ones one after another: the byte is
-    /// `old | ones`. During the write, ones become zeros: it is `new | ones`,
-    /// or `old & (new | ones)` in [`EepromMode::WriteOnly`]. So 0 is the first instant of
-    /// the erase and the last of the write, and 0xff is the last instant of the erase and the
+    /// `ones` chooses the value that remains in the byte of an operation in progress. During the erase phase, zeros
+    /// of the old value become ones one after another: the byte is `old | ones`. During the write phase, ones
+    /// become zeros: the byte is `new | ones`, or `old & (new | ones)` in [`EepromMode::WriteOnly`]. So 0 is the
+    /// first instant of the erase and the last of the write, and 0xff is the last instant of the erase and the
     /// first of the write.
     ///
-    /// In [`Fidelity::Stock`](crate::Fidelity) only [`PowerCut::AtCycle`] has an effect,
-    /// and it never tears a byte.
+    /// With [`Fidelity::Stock`](crate::Fidelity), only [`PowerCut::AtCycle`] has an effect, and it never tears a
+    /// byte.
     pub fn cut_power(&mut self, when: PowerCut, ones: u8) {
         self.set_torn_bits(ones);
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps a number until
@@ -111,8 +108,8 @@ impl Uno {
         unsafe { ffi::uno_keep_power(self.raw) }
     }
 
-    /// Sets the `ones` of [`Uno::cut_power`] for power that fails in another way: by a supply below
-    /// 1.8 V or by [`Uno::power_cycle`].
+    /// Sets the `ones` of [`Uno::cut_power`] for other power failures: a supply below 1.8 V, or
+    /// [`Uno::power_cycle`].
     pub fn set_torn_bits(&mut self, ones: u8) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps a number.
         unsafe { ffi::uno_set_torn_ones(self.raw, ones) }

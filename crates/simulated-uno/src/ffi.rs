@@ -1,6 +1,5 @@
-//! The shim's functions, as declared in `shim/`. Private: [`crate::Uno`] is the
-//! safe interface to them. The items of the shim's lists are public types with the layout
-//! of C: [`crate::Edge`], [`crate::SerialByte`] and others.
+//! Declarations of the C functions in `shim/`. Private: [`crate::Uno`] is the safe interface to them. The items of
+//! the shim's lists are public types with C layout: [`crate::Edge`], [`crate::SerialByte`] and others.
 
 use std::ffi::{c_char, c_void};
 

@@ -1,4 +1,4 @@
-//! A firmware image: the contents of flash and SRAM by an ELF file or one of Intel HEX.
+//! A firmware image: the contents of flash and SRAM, read from an ELF or Intel HEX file.
 
 use std::io::Read;
 use std::ops::Range;
@@ -13,16 +13,15 @@ pub const SRAM_START: u16 = 0x0100;
 /// The address after the last byte of SRAM.
 pub const SRAM_END: u16 = 0x0900;
 
-/// The longest file that is read, bytes; much longer than code of 32 KiB with all its debug
-/// information.
+/// The size limit of a file, bytes: much more than 32 KiB of code with all its debug information.
 const MAX_FILE_BYTES: u64 = 4 << 20;
 
 /// The address of SRAM in the single address space of avr-gcc's linker script.
 const DATA_SPACE: u64 = 0x80_0000;
-/// The address of the EEPROM there.
+/// The address of the EEPROM in the same address space.
 const EEPROM_SPACE: u64 = 0x81_0000;
 
-/// The reason why an image cannot be loaded.
+/// The reason an image cannot be loaded.
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
     /// The file cannot be read.
@@ -42,7 +41,7 @@ pub enum LoadError {
     /// The ELF file is for another machine.
     #[error("not an ELF file of an AVR")]
     NotAvr,
-    /// A segment does not fit.
+    /// A segment does not fit into its memory.
     #[error("{size} bytes at {address:#x} do not fit an ATmega328P")]
     TooLarge {
         /// The address of the segment.
@@ -53,7 +52,7 @@ pub enum LoadError {
     /// The file has no code.
     #[error("the file holds no code")]
     Empty,
-    /// A line is not Intel HEX.
+    /// A line of the file is not Intel HEX.
     #[error("line {line} is not Intel HEX: {reason}")]
     HexLine {
         /// The line's number, counted from 1.
@@ -69,7 +68,7 @@ pub enum LoadError {
 /// A named address in flash or SRAM.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Symbol {
-    /// The name as the linker knows it (mangled, if the language mangles).
+    /// The name as the linker knows it, mangled if the language mangles names.
     pub name: String,
     /// Byte address in flash; SRAM addresses start at 0x80_0000.
     pub address: u64,
@@ -80,12 +79,12 @@ pub struct Symbol {
 }
 
 impl Symbol {
-    /// The name as its author wrote it, with its path, such as `core::console::Console::frame`.
+    /// The demangled name with its path, such as `core::console::Console::frame`.
     #[must_use]
     pub fn path(&self) -> String {
         let name = format!("{:#}", rustc_demangle::demangle(&self.name));
-        // `<core::console::Console<Lizard>>::frame` is `core::console::Console::frame`:
-        // the brackets around a type are removed, those after one with their contents.
+        // `<core::console::Console<Lizard>>::frame` becomes `core::console::Console::frame`: brackets around a type
+        // are removed, brackets after a type are removed with their contents.
         let mut path = String::new();
         let mut brackets: Vec<bool> = Vec::new();
         for letter in name.chars() {
@@ -120,8 +119,7 @@ pub struct Image {
 }
 
 impl Image {
-    /// Reads an ELF file or, with the feature `hex`, one of Intel HEX, which begins with
-    /// a colon.
+    /// Reads an ELF file or, with the feature `hex`, an Intel HEX file, which begins with a colon.
     ///
     /// # Errors
     /// See [`LoadError`].
@@ -206,7 +204,7 @@ impl Image {
         })
     }
 
-    /// An image of nothing but these bytes, all of them inside flash.
+    /// Returns an image that consists of these segments, all inside flash.
     #[cfg(feature = "hex")]
     pub(crate) fn of_segments(segments: Vec<(u32, Vec<u8>)>) -> Self {
         Self {
@@ -243,22 +241,21 @@ impl Image {
         &self.symbols
     }
 
-    /// The symbol of this exact name.
+    /// The symbol with exactly this name.
     #[must_use]
     pub fn symbol(&self, name: &str) -> Option<&Symbol> {
         self.symbols.iter().find(|symbol| symbol.name == name)
     }
 
-    /// The one function whose path ends with `path`, such as `frame` or
-    /// `Console::frame`; `None` if there is none (the compiler may have inlined
-    /// it) or more than one.
+    /// The only function whose path ends with `path`, such as `frame` or `Console::frame`. `None` if there are
+    /// several, or none (the compiler may have inlined it).
     #[must_use]
     pub fn function(&self, path: &str) -> Option<&Symbol> {
         self.unique_symbol(path, |symbol| symbol.is_function)
     }
 
-    /// The data address of the one variable whose path ends with `path`, such as
-    /// `pulses::LATE`; `None` if there is none or more than one.
+    /// The data address of the only variable whose path ends with `path`, such as `pulses::LATE`. `None` if there
+    /// are several or none.
     #[must_use]
     pub fn variable(&self, path: &str) -> Option<u16> {
         let in_data = |symbol: &Symbol| (DATA_SPACE..EEPROM_SPACE).contains(&symbol.address);
@@ -266,8 +263,8 @@ impl Image {
         Some((symbol.address - DATA_SPACE) as u16)
     }
 
-    /// The symbol whose path ends with `path`, among those of a kind; `None` unless all that match
-    /// have one address.
+    /// The symbol of a kind whose path ends with `path`. `None` if there is none, or if those that match have
+    /// different addresses.
     fn unique_symbol(&self, path: &str, is_of_kind: impl Fn(&Symbol) -> bool) -> Option<&Symbol> {
         let matches = |symbol: &&Symbol| is_of_kind(symbol) && symbol.matches_path(path);
         let mut matching = self.symbols.iter().filter(matches);
@@ -277,8 +274,7 @@ impl Image {
             .then_some(first)
     }
 
-    /// The contents of flash from address 0 to the last byte used, 0xff where
-    /// the image has none.
+    /// The contents of flash from address 0 to the last byte used; 0xff where the image has no data.
     #[must_use]
     pub fn flash(&self) -> Vec<u8> {
         let mut flash = vec![0xff; self.code_end() as usize];
@@ -289,11 +285,11 @@ impl Image {
         flash
     }
 
-    /// Puts bytes into flash at the beginning of a range, in place of all that the image
-    /// has in the range: data that is exchanged without a compiler.
+    /// Writes bytes to the start of a range of flash and removes everything else that the image has in the range.
+    /// It exchanges data without a compiler.
     ///
     /// # Errors
-    /// Returns [`LoadError::TooLarge`] if the range is not inside flash or is too short for them.
+    /// Returns [`LoadError::TooLarge`] if the range is not inside flash or is too short for the bytes.
     pub fn replace(&mut self, range: Range<u32>, bytes: &[u8]) -> Result<(), LoadError> {
         let size = bytes.len() as u64;
         if range.end > FLASH_SIZE || u64::from(range.start) + size > u64::from(range.end) {

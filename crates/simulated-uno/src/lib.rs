@@ -1,15 +1,13 @@
 //! An Arduino UNO for tests: an ATmega328P at 16 MHz on libsimavr, with an
 //! oscilloscope on its pins and a sender on its serial line.
 //!
-//! A firmware cannot run on the machine that compiles it, and a board on the desk has no
-//! cycle counter, does not show its stack, and takes ten minutes to run ten minutes. Here
-//! time is a number of CPU cycles that passes as fast as the host can compute, and the
-//! same firmware with the same input gives the same edges to the cycle. Only [`Port`]
-//! keeps real time, for programs that expect a board on USB.
+//! A firmware cannot run on the machine that compiles it. A board on the desk has no cycle counter, does not show
+//! its stack, and takes ten minutes to run ten minutes. In the simulation, time is a number of CPU cycles that
+//! passes as fast as the host can compute, and the same firmware with the same input gives the same edges to the
+//! cycle. Only [`Port`] runs in real time, for programs that expect a board on USB.
 //!
-//! Do not use it for another chip than the ATmega328P, for firmware that depends on hardware PWM,
-//! SPI, TWI or the analogue comparator, or to learn about currents and noise: README.md has the
-//! reasons.
+//! Not suitable for another chip than the ATmega328P, for firmware that depends on hardware PWM, SPI, TWI or the
+//! analogue comparator, or to learn about currents and noise. README.md has the reasons.
 //!
 //! ```
 //! use simulated_uno::{Fidelity, Pin, Uno, avr_gcc};
@@ -29,10 +27,10 @@
 //! README.md has more examples, and every correction of simavr with its section of the
 //! data sheet. [`Uno::load`] loads a compiled firmware from its file.
 //!
-//! Several [`Uno`]s may run at once on as many threads: libsimavr keeps no
-//! state outside an instance but the logger, which is set once.
+//! Several [`Uno`]s may run at once on as many threads: the only state that libsimavr keeps outside an instance is
+//! the logger, which is set once.
 
-#![allow(unsafe_code)] // It calls C; `Uno` has the argument for all of it.
+#![allow(unsafe_code)] // It calls C; the docs of `Uno` justify all of it.
 
 mod adc;
 #[cfg(feature = "avr-gcc")]

@@ -1,4 +1,4 @@
-//! Pins as an oscilloscope sees them: edges, and the pulses between them.
+//! Pins as an oscilloscope shows them: edges, and the pulses between them.
 
 /// A pin by its name on the board: D0 to D13, or A0 to A5.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -56,8 +56,8 @@ impl std::fmt::Display for Pin {
     }
 }
 
-/// A change of level. Its cycle is the one in which the instruction that
-/// stored the port ends, the same for every kind of store and both directions.
+/// A change of a pin's level. Its cycle is the one in which the instruction that stores to the port ends, for every
+/// kind of store instruction and both directions.
 // `struct edge` of the shim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(C)]
@@ -79,7 +79,7 @@ pub struct Pulse {
     pub width: u64,
 }
 
-/// The finished pulses of one pin. A pulse that has not ended is left out.
+/// Returns the complete pulses of one pin, without a pulse that has not ended.
 #[must_use]
 pub fn pulses(edges: &[Edge], pin: Pin) -> Vec<Pulse> {
     let mut rise = None;
@@ -97,13 +97,13 @@ pub fn pulses(edges: &[Edge], pin: Pin) -> Vec<Pulse> {
     pulses
 }
 
-/// The largest number of pins that were high at once.
+/// Returns the largest number of pins that were high at once.
 #[must_use]
 pub fn most_pins_high(edges: &[Edge]) -> u32 {
     let mut levels = 0u32;
     let mut largest = 0;
     let mut edges = edges.to_vec();
-    // At equal cycles a fall comes first: back-to-back pulses do not overlap.
+    // At equal cycles, falling edges come first, so that consecutive pulses do not overlap.
     edges.sort_by_key(|edge| (edge.cycle, edge.high));
     for edge in edges {
         let bit = 1u32 << edge.pin.number();

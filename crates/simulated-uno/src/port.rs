@@ -1,17 +1,15 @@
 //! A simulated UNO that other programs can use like a board on USB: at a serial port, in
 //! real time.
 //!
-//! avrdude, a terminal program or a host tool cannot wait for a simulation that knows
-//! cycles only. Here the chip's time follows real time, bytes go through a pseudo
-//! terminal such as /dev/pts/3, and opening it resets the chip, as the DTR line of a USB
-//! cable does on a UNO.
+//! avrdude, a terminal program or a host tool cannot wait for a simulation that counts only cycles. Here the chip's
+//! time follows real time, and bytes go through a pseudo terminal such as /dev/pts/3. Opening it resets the chip,
+//! as the DTR line of a USB cable does on a UNO.
 //!
-//! The speed that a program sets at the port is that of the line: at another speed than the
-//! chip's, both read other bytes than were sent. It is 115200 baud until a program sets it.
+//! The speed that a program sets at the port is the speed of the line. If it differs from the chip's, both sides
+//! read other bytes than were sent. It is 115200 baud until a program sets it.
 //!
-//! Two things differ from a cable. A second opening resets the chip only if
-//! all programs had closed the port. And toggling DTR while it is open does
-//! nothing; the programs that try get `Inappropriate ioctl for device`.
+//! Two things differ from a cable. A second opening resets the chip only if all programs had closed the port. And
+//! toggling DTR while the port is open has no effect: programs that try it get `Inappropriate ioctl for device`.
 //!
 //! ```no_run
 //! use std::time::Duration;
@@ -23,7 +21,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`Port::in_background`] does the same on a thread of its own.
+//! [`Port::in_background`] does the same on its own thread.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -36,33 +34,32 @@ use crate::pty::Pty;
 use crate::serial::sample_byte;
 use crate::{FREQUENCY, Radio, State, Uno};
 
-/// The time between two checks of the port; the USB chip of a UNO has the same.
+/// The time between two checks of the port, the same as in the UNO's USB chip.
 const TICK: Duration = Duration::from_millis(1);
-/// The longest time that the chip catches up after this program was held up. A longer one
-/// could make a watchdog fire before the other program has run.
+/// The longest simulated time that the chip catches up after this program was delayed. A longer one could let a
+/// watchdog expire before the other program has run.
 const MAX_CATCH_UP: Duration = Duration::from_millis(20);
-/// The largest number of bytes on their way to the chip; others wait in the pseudo terminal, as in
-/// the driver of a USB port.
+/// The largest number of bytes on their way to the chip. Others wait in the pseudo terminal, as they wait in the
+/// driver of a USB port.
 const MAX_UNSENT_BYTES: usize = 128;
 /// The largest number of bytes kept for a program that does not read. Later ones are lost.
 const MAX_UNREAD_BYTES: usize = 1 << 16;
 
-/// A serial port of this machine with a simulated UNO behind it. The port exists until
-/// this is dropped.
+/// A serial port of this machine with a simulated UNO behind it. The port exists until this value is dropped.
 #[derive(Debug)]
 pub struct Port {
     pty: Pty,
     /// The chip's bytes that wait for room in the pseudo terminal.
     unread: Vec<u8>,
     is_open: bool,
-    /// The module between the port and the chip, in place of a cable.
+    /// The radio module between the port and the chip; `None` for a cable.
     radio: Option<Radio>,
-    /// The wall clock's time and the chip's cycle at the same moment.
+    /// The wall clock's time and the chip's cycle at the same instant.
     anchor: Option<(Instant, u64)>,
 }
 
 impl Port {
-    /// Makes a port that no program has open.
+    /// Returns a new port that no program has open.
     ///
     /// # Errors
     /// Fails if the system has no pseudo terminals left.
@@ -76,7 +73,8 @@ impl Port {
         })
     }
 
-    /// The same port behind a radio module: opening it resets nothing, and its speed is the module's.
+    /// Puts a radio module between the port and the chip: opening the port resets nothing, and its speed is the
+    /// module's.
     #[must_use]
     pub fn by_radio(mut self, radio: Radio) -> Self {
         self.radio = Some(radio);
@@ -95,15 +93,14 @@ impl Port {
         self.is_open
     }
 
-    /// Lets `uno` run in real time for `time` of the wall clock, and passes bytes
-    /// between it and the program that has the port open. A chip that halts or crashes does
-    /// nothing more until the next opening resets it.
+    /// Runs `uno` in real time for `time` of the wall clock, and passes bytes between it and the program that has
+    /// the port open. A chip that has halted or crashed does nothing until the next opening resets it.
     ///
-    /// The caller should take the edges ([`Uno::take_edges`]), which need 1600 bytes for a second of
-    /// four servos. The bytes of the serial line are not kept.
+    /// The caller should take the edges ([`Uno::take_edges`]): four servos produce 1600 bytes of them in a second.
+    /// The bytes of the serial line are not kept.
     ///
     /// # Errors
-    /// Returns the system's error at the pseudo terminal.
+    /// Returns the system's error if the pseudo terminal fails.
     pub fn serve(&mut self, uno: &mut Uno, time: Duration) -> io::Result<()> {
         let end = Instant::now() + time;
         while Instant::now() < end {
@@ -113,8 +110,8 @@ impl Port {
         Ok(())
     }
 
-    /// Serves the port on a thread of its own until [`Background::stop`]. `watch` gets
-    /// the UNO every millisecond and should take its edges; it must not block.
+    /// Serves the port on its own thread until [`Background::stop`]. `watch` gets the UNO every millisecond and
+    /// should take its edges; it must not block.
     ///
     /// # Errors
     /// Fails if the system cannot start a thread.
@@ -175,7 +172,7 @@ impl Port {
                     .collect()
             }
         };
-        // Checked again, since this program may have been held up meanwhile.
+        // Checks again, since this program may have been delayed meanwhile.
         if self.is_open && self.pty.is_open()? {
             self.unread.extend(arrived);
             self.unread.truncate(MAX_UNREAD_BYTES);
@@ -202,8 +199,8 @@ fn cycles(time: Duration) -> u64 {
     (time.as_nanos() * u128::from(FREQUENCY) / 1_000_000_000) as u64
 }
 
-/// A port with its UNO on a thread of its own. Dropped without
-/// [`Background::stop`], it continues until the program ends.
+/// A port with its UNO on their own thread. If it is dropped without [`Background::stop`], it continues until the
+/// program ends.
 #[derive(Debug)]
 pub struct Background {
     path: PathBuf,
@@ -218,10 +215,10 @@ impl Background {
         &self.path
     }
 
-    /// Ends the thread and the port; returns the UNO in its present state.
+    /// Ends the thread and closes the port. Returns the UNO in its present state.
     ///
     /// # Errors
-    /// Returns the error that had ended the thread: see [`Port::serve`].
+    /// Returns the error that ended the thread: see [`Port::serve`].
     ///
     /// # Panics
     /// If `watch` panicked.

@@ -1,15 +1,13 @@
-//! A pseudo terminal: a serial port of this machine without a cable, its other
-//! end in this program.
+//! A pseudo terminal: a serial port of this machine without a cable, whose other end is in this program.
 //!
-//! It differs from a serial port in three things. It has no DTR line, so this module
-//! watches the file to notice that it is opened. The speed that a program sets has no
-//! effect of its own, but can be read. And bytes that a program leaves unread would wait for the
-//! next program, while the driver of a real port drops them; so they are dropped here.
+//! It differs from a serial port in three ways. It has no DTR line, so this module watches the file to notice that
+//! it is opened. The speed that a program sets has no effect of its own, but can be read. And bytes that a program
+//! leaves unread would wait for the next program, while the driver of a real port discards them; so this module
+//! discards them.
 //!
-//! To drop them, this program opens the port itself for a moment. If another thread starts a
-//! program at that moment, the new process has a copy of all open files until it calls
-//! exec, and the port stays open as long as there is a copy. So this module waits until
-//! the port is really closed.
+//! To discard them, this program opens the port itself for a moment. If another thread starts a program at that
+//! moment, the new process has a copy of all open files until it calls exec, and the port stays open as long as a
+//! copy exists. So this module waits until the port is really closed.
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Read, Write};
@@ -25,47 +23,47 @@ use rustix::fs::{Mode, OFlags};
 use rustix::pty::{OpenptFlags, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, QueueSelector, tcflush, tcgetattr, tcsetattr};
 
-/// The speed until a program sets another.
+/// The speed until a program sets another one.
 const BAUD: u32 = 115_200;
-/// The longest time from the start of a program to its execution, on a busy machine.
+/// The longest time from the fork to the exec of a new process, on a busy machine.
 const MAX_START_TIME: Duration = Duration::from_secs(10);
 
-/// The port's state, and its changes since the last look.
+/// The port's state, and its changes since the last check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Look {
-    /// True while a program has it open.
+    /// True while a program has the port open.
     pub(crate) is_open: bool,
-    /// True if it has been opened after having been closed.
+    /// True if the port has been opened after it was closed.
     pub(crate) was_opened: bool,
 }
 
-/// A pseudo terminal. It exists until this is dropped.
+/// A pseudo terminal. It exists until this value is dropped.
 #[derive(Debug)]
 pub(crate) struct Pty {
     ours: File,
     opens: OwnedFd,
     path: PathBuf,
-    /// True if it was open at the last look.
+    /// True if the port was open at the last check.
     was_open: bool,
-    /// True if a program has closed the port but it is still open. The system may report another
-    /// opening only at the next look.
+    /// True if a program has closed the port but the port is still open. The system may report a new opening only
+    /// at the next check.
     in_doubt: bool,
 }
 
 impl Pty {
-    /// Makes a pseudo terminal that passes bytes on unchanged.
+    /// Returns a new pseudo terminal that passes bytes on unchanged.
     ///
     /// # Errors
-    /// Fails if the system has none left, or no /dev/pts; [`ErrorKind::TimedOut`] if a program that
-    /// was started meanwhile keeps it open.
+    /// Fails if the system has no pseudo terminals left, or no /dev/pts. Fails with [`ErrorKind::TimedOut`] if a
+    /// program that was started meanwhile keeps the port open.
     pub(crate) fn new() -> io::Result<Self> {
         let ours = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
         unlockpt(&ours)?;
         rustix::io::ioctl_fionbio(&ours, true)?;
         let name = ptsname(&ours, Vec::new())?;
         let path = PathBuf::from(name.to_string_lossy().into_owned());
-        // The system reports that no program has the port open only after it was opened and
-        // closed once. The settings outlive the closing.
+        // Until the port was opened and closed once, the system does not report that no program has it open. The
+        // settings survive the closing.
         let theirs = other_end(&path, OFlags::RDWR)?;
         let mut settings = tcgetattr(&theirs)?;
         settings.make_raw();
@@ -73,7 +71,7 @@ impl Pty {
         tcsetattr(&theirs, OptionalActions::Now, &settings)?;
         drop(theirs);
         let ours = File::from(ours);
-        // No other program knows its name yet.
+        // No other program knows the port's name yet.
         if !wait_until(|| Ok(!is_open(&ours)?))? {
             let words = "a program that was started meanwhile keeps the new port open";
             return Err(io::Error::new(ErrorKind::TimedOut, words));
@@ -95,8 +93,7 @@ impl Pty {
         &self.path
     }
 
-    /// Looks at the port. An opening is seen however short it is, and however short the pause
-    /// before it.
+    /// Checks the port. It notices every opening, however short the opening or the pause before it.
     ///
     /// # Errors
     /// Fails if the system is out of memory.
@@ -114,7 +111,7 @@ impl Pty {
         })?;
         let mut open = self.is_open()?;
         opened |= open && !was_open;
-        // A program that closes it while another has it open changes nothing.
+        // If a program closes the port while another has it open, nothing changes.
         if was_open && (opened || !open) {
             self.drop_unread()?;
             let now = self.is_open()?;
@@ -129,7 +126,7 @@ impl Pty {
         })
     }
 
-    /// True if a program has it open at this moment.
+    /// True if a program has the port open at this moment.
     ///
     /// # Errors
     /// Fails if the system is out of memory.
@@ -149,17 +146,17 @@ impl Pty {
         }
     }
 
-    /// Drops the bytes that the last program has not read, so that the next does not get them.
+    /// Discards the bytes that the last program has not read, so that the next one does not get them.
     fn drop_unread(&self) -> io::Result<()> {
-        // It cannot be opened while a program has exclusive use of it; then that
-        // program has dropped what it found.
+        // The port cannot be opened while a program has exclusive use of it. Then that program has discarded what
+        // it found.
         let Ok(theirs) = other_end(&self.path, OFlags::RDONLY) else {
             return self.events(|_anything| {});
         };
         tcflush(&theirs, QueueSelector::IFlush)?;
         drop(theirs);
-        // A port that was opened only to read is closed without CLOSE_WRITE, which distinguishes
-        // this opening from a program's. If the port is open in the end, a program has opened it.
+        // A port that was opened only for reading closes without CLOSE_WRITE, which distinguishes this opening from
+        // a program's. If the port is open at the end, a program has opened it.
         let mut closed = false;
         wait_until(|| {
             self.events(|event| closed |= event.contains(ReadFlags::CLOSE_NOWRITE))?;
@@ -168,34 +165,34 @@ impl Pty {
         self.events(|_rest| {})
     }
 
-    /// The speed last set by a program, in baud.
+    /// The speed that a program set last, baud.
     ///
     /// # Errors
-    /// Returns the system's error at the pseudo terminal.
+    /// Returns the system's error if the pseudo terminal fails.
     pub(crate) fn baud(&self) -> io::Result<f64> {
-        // Linux returns the settings of the other end. Speed 0 makes a modem hang up.
+        // Linux returns the settings of the other end. Speed 0 means "hang up".
         Ok(match tcgetattr(&self.ours)?.output_speed() {
             0 => f64::from(BAUD),
             baud => f64::from(baud),
         })
     }
 
-    /// Reads bytes that programs have written; 0 if there are none.
+    /// Reads bytes that programs have written. Returns their number, 0 if there are none.
     ///
     /// # Errors
-    /// Returns the system's error at the pseudo terminal.
+    /// Returns the system's error if the pseudo terminal fails.
     pub(crate) fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         match self.ours.read(into) {
-            // EIO: no program has it open and nothing is left to read.
+            // EIO: no program has the port open, and nothing is left to read.
             Err(error) if error.raw_os_error() == Some(EIO) => Ok(0),
             other => or_nothing(other),
         }
     }
 
-    /// Writes to the program that has it open; returns the number of bytes accepted.
+    /// Writes to the program that has the port open. Returns the number of bytes accepted.
     ///
     /// # Errors
-    /// Returns the system's error at the pseudo terminal.
+    /// Returns the system's error if the pseudo terminal fails.
     pub(crate) fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         or_nothing(self.ours.write(bytes))
     }
@@ -207,7 +204,7 @@ fn is_open(ours: &File) -> io::Result<bool> {
     Ok(!fds[0].revents().contains(PollFlags::HUP))
 }
 
-/// Waits for a condition for as long as the start of a program may take; false if it never holds.
+/// Waits until a condition holds, at most [`MAX_START_TIME`]. Returns false if it does not hold by then.
 fn wait_until(mut condition: impl FnMut() -> io::Result<bool>) -> io::Result<bool> {
     let end = Instant::now() + MAX_START_TIME;
     while !condition()? {
@@ -226,7 +223,7 @@ fn other_end(path: &Path, access: OFlags) -> rustix::io::Result<OwnedFd> {
 
 const EIO: i32 = rustix::io::Errno::IO.raw_os_error();
 
-/// The number of bytes of a transfer; 0 if none is possible at the moment.
+/// Converts the result of a transfer to a number of bytes, which is 0 if no transfer is possible at the moment.
 fn or_nothing(transfer: io::Result<usize>) -> io::Result<usize> {
     match transfer {
         Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => {

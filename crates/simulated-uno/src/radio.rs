@@ -1,10 +1,9 @@
-//! A radio module at the serial line, such as an HM-10 or an HC-05.
+//! A radio module on the serial line, such as an HM-10 or an HC-05.
 //!
-//! Instead of a cable there is air between a phone and the chip. Bytes travel in packets of 20,
-//! each some milliseconds late, in order; a packet may be lost, and the link may end in the middle
-//! of a line and be back seconds later. Then the module says so in the line itself,
-//! `OK+LOST` and `OK+CONN`, without a line end; an HC-05 says nothing. It passes bytes on at its own rate, and it resets
-//! nothing.
+//! It replaces the cable between a host, such as a phone, and the chip. Bytes travel in packets of 20, each some
+//! milliseconds late, in order. A packet may be lost, and the link may end in the middle of a line and return
+//! seconds later. Then an HM-10 reports it in the line itself, as `OK+LOST` and `OK+CONN` without a line end; an
+//! HC-05 reports nothing. The module passes bytes on at its own rate, and it never resets the chip.
 //!
 //! ```no_run
 //! # use simulated_uno::{Air, Fidelity, Radio, Uno};
@@ -25,30 +24,30 @@ use crate::{CYCLES_PER_MS, Uno};
 
 /// The largest number of bytes in a packet.
 const PACKET_BYTES: usize = 20;
-/// Time that a packet takes, ms.
+/// The time that a packet travels, ms.
 const DELAY_MS: std::ops::Range<f64> = 7.5..100.0;
-/// Time for which a module gathers bytes of the chip, ms.
+/// The time for which a module collects the chip's bytes for a packet, ms.
 const GATHERING_MS: u64 = 20;
-/// Time for which a link stays away, ms.
+/// The time for which a link is interrupted, ms.
 const OUTAGE_MS: std::ops::Range<u64> = 200..5000;
 
-/// The air between a module and a phone.
+/// Properties of the radio link between a module and a phone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Air {
     /// The rate of the module's serial line, baud.
     pub baud: f64,
     /// The share of packets that are lost, 0 to 1.
     pub loss: f64,
-    /// The mean time from one end of the link to the next, ms; 0: it does not end.
+    /// The mean duration of a link, ms; 0 if it does not end.
     pub holds: u64,
-    /// True if the module says in the line when the link begins and ends.
+    /// True if the module reports in the line when the link begins and ends.
     pub reports_link: bool,
     /// The seed of the random numbers.
     pub seed: u64,
 }
 
 impl Default for Air {
-    /// A new module, in a room.
+    /// A new module and a phone in the same room.
     fn default() -> Self {
         Self {
             baud: 9600.0,
@@ -60,10 +59,10 @@ impl Default for Air {
     }
 }
 
-/// Packets on their way in one direction.
+/// The packets on their way in one direction.
 #[derive(Debug, Default)]
 struct Flight {
-    /// Each with the cycle at which it arrives.
+    /// The packets in order, each with the cycle at which it arrives.
     packets: VecDeque<(u64, Vec<u8>)>,
 }
 
@@ -92,7 +91,7 @@ impl Flight {
         bytes
     }
 
-    /// Ends the flight: of the next packet some bytes arrive, of the others none.
+    /// Cuts the transmission: some bytes of the next packet arrive, the other packets are lost.
     fn cut(&mut self, random: &mut fastrand::Rng) -> Vec<u8> {
         let packets = std::mem::take(&mut self.packets);
         let mut next = packets.into_iter().next().unwrap_or_default().1;
@@ -101,23 +100,23 @@ impl Flight {
     }
 }
 
-/// A module, and the air to a phone.
+/// A radio module and its link to a phone.
 #[derive(Debug)]
 pub struct Radio {
     air: Air,
     random: fastrand::Rng,
     to_uno: Flight,
     to_phone: Flight,
-    /// The chip's bytes that wait for a packet, and the cycle of the first.
+    /// The chip's bytes that wait for a packet, and the cycle at which the first of them came.
     gathered: (Vec<u8>, u64),
-    /// The cycle of the next end of the link, or of its next beginning.
+    /// The cycle at which the link ends next or, while there is no link, begins again.
     turns: Option<u64>,
     is_in_reach: bool,
     has_left: bool,
 }
 
 impl Radio {
-    /// A module with a link to a phone.
+    /// Returns a module with a link to a phone.
     #[must_use]
     pub fn new(air: Air) -> Self {
         let mut radio = Self {
@@ -134,7 +133,7 @@ impl Radio {
         radio
     }
 
-    /// True while the link is there.
+    /// True while the link exists.
     #[must_use]
     pub fn is_in_reach(&self) -> bool {
         self.is_in_reach
@@ -146,21 +145,21 @@ impl Radio {
         self.air.baud
     }
 
-    /// Sends the phone's bytes at a cycle of the chip. Out of reach they are lost.
+    /// Sends the phone's bytes at a cycle of the chip. Without a link, they are lost.
     pub fn write(&mut self, bytes: &[u8], now: u64) {
         if self.is_in_reach {
             self.to_uno.send(bytes, now, self.air, &mut self.random);
         }
     }
 
-    /// Ends the link for good: the phone leaves.
+    /// Ends the link permanently: the phone moves out of range.
     pub fn leave(&mut self, now: u64) {
         self.has_left = true;
         self.turns = self.is_in_reach.then_some(now);
     }
 
-    /// Delivers the bytes that have arrived at the chip by now, and returns those for the phone.
-    /// To be called every millisecond of the chip's time.
+    /// Delivers the bytes that have arrived at the chip by now, and returns those for the phone. Must be called
+    /// every millisecond of the chip's time.
     pub fn exchange(&mut self, uno: &mut Uno) -> Vec<u8> {
         uno.set_baud(self.air.baud);
         let sent: Vec<u8> = uno
@@ -174,7 +173,7 @@ impl Radio {
         to_phone
     }
 
-    /// The bytes as the module receives them, at its own rate, from a chip at another, baud.
+    /// The bytes as the module reads them at its own rate, if the chip sends them at `chip_baud`.
     #[must_use]
     pub fn received_bytes(&self, sent: &[u8], chip_baud: f64) -> Vec<u8> {
         let ratio = chip_baud / self.air.baud;
@@ -203,7 +202,7 @@ impl Radio {
         [to_uno, self.to_phone.arrive(now)]
     }
 
-    /// Ends the link, or begins it again.
+    /// Ends the link or begins it again.
     fn turn(&mut self, now: u64) -> [Vec<u8>; 2] {
         self.is_in_reach = !self.is_in_reach;
         let mut to_uno = self.to_uno.cut(&mut self.random);

@@ -3,18 +3,18 @@
 use crate::ffi;
 use crate::{State, Uno};
 
-/// The cause of a reset; a bit of MCUSR (data sheet 11.9.1).
+/// The cause of a reset: a bit of MCUSR (data sheet 11.9.1).
 // `enum reset_cause` of the shim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum ResetCause {
     /// The power was switched on.
     PowerOn = 1 << 0,
-    /// The RESET pin, which opening the serial port pulls.
+    /// The RESET pin was low, as when the serial port is opened.
     External = 1 << 1,
     /// The supply was below the brown-out level.
     BrownOut = 1 << 2,
-    /// The watchdog's time was over.
+    /// The watchdog expired.
     Watchdog = 1 << 3,
 }
 
@@ -30,10 +30,9 @@ pub struct Reset {
 }
 
 impl Uno {
-    /// Pulls the RESET pin for an instant, as opening the serial port does. SRAM,
-    /// EEPROM and r0 to r31 keep their contents, an EEPROM operation continues, the
-    /// I/O registers take their reset values, every pin becomes an input and is
-    /// recorded as low. A halted or crashed firmware runs again. It has no effect without
+    /// Pulls the RESET pin low for an instant, as opening the serial port does. SRAM, EEPROM and r0 to r31 keep
+    /// their contents, and an EEPROM operation continues. The I/O registers take their reset values, and every pin
+    /// becomes an input and is recorded as low. A halted or crashed firmware runs again. There is no effect without
     /// power, or while the supply is too low.
     ///
     /// The chip's start-up delay (65 ms on a UNO) is not simulated.
@@ -46,35 +45,33 @@ impl Uno {
         }
     }
 
-    /// Switches the power off and on at once, at the supply's present voltage. Only the EEPROM
-    /// survives; the byte of an operation in progress is torn
-    /// (see [`Uno::set_torn_bits`]). SRAM and r0 to r31 contain noise.
+    /// Switches the power off and on again at once, at the supply's present voltage. Only the EEPROM survives; the
+    /// byte of an operation in progress is torn (see [`Uno::set_torn_bits`]). SRAM and r0 to r31 contain noise.
     pub fn power_cycle(&mut self) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; as in `reset`.
         unsafe { ffi::uno_power_cycle(self.raw) }
         self.state = State::Alive;
     }
 
-    /// Sets the effects of a boot loader like the UNO's, which runs before the firmware at each
-    /// start: it clears MCUSR, so that the firmware cannot see the cause of the reset,
-    /// and switches the watchdog off. It takes no time here; the real
-    /// one waits a second after an external reset. If no cycle has passed yet, the setting
-    /// also applies to the present start. Off unless set. In
-    /// [`Fidelity::Stock`](crate::Fidelity) the watchdog stays on.
+    /// Simulates the effects of a boot loader like the UNO's, which runs before the firmware at each start: it
+    /// clears MCUSR, so that the firmware cannot see the cause of the reset, and switches the watchdog off. It
+    /// takes no time here; the real one waits a second after an external reset. If no cycle has passed yet, the
+    /// setting also applies to the present start. Off by default. With [`Fidelity::Stock`](crate::Fidelity) the
+    /// watchdog stays on.
     pub fn set_boot_loader(&mut self, is_present: bool) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps a flag, and
         // restarts a chip that has not begun.
         unsafe { ffi::uno_set_boot_loader(self.raw, is_present) }
     }
 
-    /// Seeds the noise that the next [`Uno::power_cycle`] leaves in SRAM and in r0
-    /// to r31. Each power-on continues the sequence.
+    /// Sets the seed of the noise that the next [`Uno::power_cycle`] leaves in SRAM and in r0 to r31. Each power-on
+    /// continues the sequence.
     pub fn set_noise_seed(&mut self, seed: u64) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps a number.
         unsafe { ffi::uno_set_noise(self.raw, seed) }
     }
 
-    /// All starts of the program so far, the first power-on included.
+    /// All starts of the program so far, including the first power-on.
     #[must_use]
     pub fn reset_events(&self) -> Vec<Reset> {
         self.list(ffi::uno_reset_events)

@@ -1,34 +1,31 @@
-//! The serial line: the bytes that are sent to the UNO, and those that it sends.
+//! The serial line: the bytes sent to the UNO and the bytes that it sends.
 
 use crate::traces::SerialByte;
 use crate::{FREQUENCY, Uno, ffi};
 
 impl Uno {
-    /// The sender's baud rate unless [`Uno::set_baud`] changes it.
+    /// The sender's default baud rate; [`Uno::set_baud`] changes it.
     pub const BAUD: f64 = 115_200.0;
 
-    /// Runs until the UNO has sent a complete line, for at most `limit` cycles.
-    /// True if it has sent one.
+    /// Runs until the UNO has sent a complete line, for at most `limit` cycles. Returns true if it has sent one.
     pub fn run_until_line(&mut self, limit: u64) -> bool {
         self.run_to(self.cycle() + limit, true)
     }
 
-    /// Queues bytes for the serial line. They are sent back to back at the baud rate,
-    /// whether or not the firmware keeps up.
+    /// Queues bytes for the serial line. They are sent back to back at the baud rate, even if the firmware does not
+    /// keep up.
     pub fn send(&mut self, bytes: &[u8]) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim copies `len` bytes from
         // a slice that has them.
         unsafe { ffi::uno_send(self.raw, bytes.as_ptr(), bytes.len(), false) }
     }
 
-    /// Sends a line with its end, `\n`, and returns the next complete line that the UNO sends,
-    /// without its end. `None` if it sends none within a second of the chip's time, or if
-    /// the firmware has stopped.
+    /// Sends a line with its line end `\n`, and returns the next complete line that the UNO sends, without its line
+    /// end. `None` if the UNO sends none within a second of the chip's time, or if the firmware has stopped.
     ///
-    /// Takes all that the UNO has transmitted, before and meanwhile, as
-    /// [`Uno::take_transmitted`] does. A line that the UNO began earlier counts as the
-    /// answer: with a firmware that sends lines of its own accord, use [`Uno::send`] and
-    /// [`Uno::run_until_line`].
+    /// Takes all that the UNO has transmitted, before and meanwhile, as [`Uno::take_transmitted`] does. The rest of
+    /// a line that the UNO began earlier counts as the answer. With a firmware that sends lines on its own, use
+    /// [`Uno::send`] and [`Uno::run_until_line`].
     pub fn say(&mut self, line: &str) -> Option<String> {
         self.take_transmitted();
         self.send(line.as_bytes());
@@ -42,17 +39,16 @@ impl Uno {
         Some(text.trim_end_matches(['\r', '\n']).to_owned())
     }
 
-    /// Sends bytes as [`Uno::send`] does, but with the line low in place of each stop bit, as after
-    /// noise or a missed start bit: the byte arrives with a framing error, FE0 in
-    /// UCSR0A. The next byte begins as usual.
+    /// Sends bytes as [`Uno::send`] does, but with the line low in place of each stop bit, as after noise or a
+    /// missed start bit. Each byte arrives with a framing error, FE0 in UCSR0A. The next byte begins as usual.
     pub fn send_with_framing_error(&mut self, bytes: &[u8]) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim copies `len` bytes from
         // a slice that has them.
         unsafe { ffi::uno_send(self.raw, bytes.as_ptr(), bytes.len(), true) }
     }
 
-    /// Saturates the serial line: repeats `bytes` forever once the queue is
-    /// empty. An empty slice ends the flood.
+    /// Saturates the serial line: repeats `bytes` forever as soon as the queue is empty. An empty slice ends the
+    /// flood.
     pub fn flood(&mut self, bytes: &[u8]) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim copies `len` bytes from
         // a slice that has them.
@@ -62,7 +58,7 @@ impl Uno {
     /// Changes the sender's baud rate, from the next byte on.
     ///
     /// # Panics
-    /// Beyond 1 to 10 million.
+    /// If the rate is not within 1 to 10 million.
     pub fn set_baud(&mut self, baud: f64) {
         assert!(
             (1.0..=1e7).contains(&baud),
@@ -73,7 +69,7 @@ impl Uno {
         unsafe { ffi::uno_set_baud(self.raw, baud) }
     }
 
-    /// The present baud rate of the chip's USART, by its registers.
+    /// The present baud rate of the chip's USART, from its registers.
     #[must_use]
     pub fn chip_baud(&self) -> f64 {
         // SAFETY: `raw` is valid, see `Uno`; the shim reads registers.
@@ -87,7 +83,7 @@ impl Uno {
         unsafe { ffi::uno_unsent(self.raw) }
     }
 
-    /// The number of bytes sent so far, a flood's included.
+    /// The number of bytes sent so far, including those of a flood.
     #[must_use]
     pub fn bytes_sent(&self) -> u64 {
         // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
@@ -113,15 +109,15 @@ impl Uno {
         self.take(ffi::uno_transmitted)
     }
 
-    /// All bytes that have arrived at the UNO, lost bytes included, each with the cycle at
-    /// which it was complete; 0xff in place of one with a framing error.
+    /// All bytes that have arrived at the UNO, including lost ones, each with the cycle at which it was complete. A
+    /// byte with a framing error is 0xff.
     #[must_use]
     pub fn received_by_uno(&self) -> Vec<SerialByte> {
         self.list(ffi::uno_received)
     }
 }
 
-/// The byte that a receiver reads if its bits are `ratio` times as long as the sender's.
+/// Returns the byte that a receiver reads if its bits are `ratio` times as long as the sender's.
 pub(crate) fn sample_byte(byte: u8, ratio: f64) -> u8 {
     // SAFETY: the shim computes with two numbers.
     unsafe { ffi::uno_sampled(byte, ratio) }

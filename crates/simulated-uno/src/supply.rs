@@ -1,13 +1,13 @@
-//! The supply voltage, which is VCC and AVCC of the chip in one.
+//! The supply voltage of the chip, for both VCC and AVCC.
 //!
-//! Servos on a weak supply make its voltage fall in mid-step. A firmware can measure that
-//! only by the ADC, and below the brown-out level it does not run at all.
+//! Servos on a weak supply make its voltage drop in mid-step. A firmware can measure that only by the ADC, and
+//! below the brown-out level it does not run at all.
 
 use crate::Uno;
 use crate::ffi;
 
 impl Uno {
-    /// The present supply voltage, mV; 5000 unless set.
+    /// The present supply voltage, mV; 5000 by default.
     #[must_use]
     pub fn supply_mv(&self) -> f64 {
         // SAFETY: `raw` is valid, see `Uno`; the shim computes a number.
@@ -24,16 +24,14 @@ impl Uno {
 
     /// Changes the supply voltage linearly to `mv` within `cycles` from now.
     ///
-    /// Below the brown-out level (less half the hysteresis of 50 mV) the chip is
-    /// held in reset: pins are inputs, time passes. Above it (more the other half)
-    /// the program starts, with BORF set. Below 1.8 V the byte of an EEPROM operation in progress
-    /// is torn; below 1.3 V the SRAM is lost, and the next start is a power-on.
+    /// Below the brown-out level (minus half the hysteresis of 50 mV) the chip is held in reset: pins are inputs,
+    /// time passes. Above it (plus the other half) the program starts, with BORF set. Below 1.8 V the byte of an
+    /// EEPROM operation in progress is torn. Below 1.3 V the SRAM is lost, and the next start is a power-on.
     ///
-    /// In [`Fidelity::Stock`](crate::Fidelity) the ADC measures `mv` at once, and nothing is ever
-    /// reset.
+    /// With [`Fidelity::Stock`](crate::Fidelity) the ADC measures `mv` at once, and nothing is ever reset.
     ///
     /// # Panics
-    /// Beyond 0 to 10 000.
+    /// If the voltage is not within 0 to 10 000 mV.
     pub fn ramp_supply_mv(&mut self, mv: f64, cycles: u64) {
         assert!(
             (0.0..=10_000.0).contains(&mv),
@@ -44,9 +42,8 @@ impl Uno {
         unsafe { ffi::uno_ramp_supply(self.raw, mv, cycles) }
     }
 
-    /// Sets the brown-out level in mV, or none. It is 2700 mV, as by the UNO's fuses,
-    /// unless set; that of a given chip may be 2500 to 2900. Without one, the chip runs
-    /// down to 1.3 V and starts above 1.4 V.
+    /// Sets the brown-out level in mV, or none. The default is 2700 mV, as set by the UNO's fuses; the level of a
+    /// given chip may be 2500 to 2900 mV. Without one, the chip runs down to 1.3 V and starts above 1.4 V.
     pub fn set_brown_out_mv(&mut self, level: Option<f64>) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps a number.
         unsafe { ffi::uno_set_brown_out(self.raw, level.unwrap_or(0.0)) }

@@ -1,9 +1,9 @@
-//! Records of a run besides edges: bytes, marks, calls, interrupts.
+//! Records of a run other than edges: serial bytes, marks, calls, interrupts.
 
 /// A byte on the serial line.
 ///
-/// The cycle of a byte that the UNO sent is the end of its stop bit in [`crate::Fidelity::DataSheet`],
-/// and the store to UDR0 in [`crate::Fidelity::Stock`], which has no frames.
+/// For a byte that the UNO sent, the cycle is the end of its stop bit with [`crate::Fidelity::DataSheet`], and the
+/// store to UDR0 with [`crate::Fidelity::Stock`], which simulates no frames.
 // `struct serial_byte` of the shim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(C)]
@@ -14,7 +14,7 @@ pub struct SerialByte {
     pub byte: u8,
 }
 
-/// A store to GPIOR0: a mark in the record that costs the firmware one cycle.
+/// A store to GPIOR0: a mark in the record, at a cost of one cycle of the firmware.
 // `struct mark` of the shim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(C)]
@@ -34,36 +34,36 @@ pub struct Call {
     pub enter: u64,
     /// Cycle after the return.
     pub leave: u64,
-    /// Cycles taken by interrupts in between, entry and `reti` included.
+    /// Cycles of the interrupts during the call, including entry and `reti`.
     pub interrupted: u64,
 }
 
 impl Call {
-    /// Cycles from entry to return, interrupts included.
+    /// Cycles from entry to return, including interrupts.
     #[must_use]
     pub fn cycles(&self) -> u64 {
         self.leave - self.enter
     }
 
-    /// Cycles of the function alone.
+    /// Cycles of the function without interrupts.
     #[must_use]
     pub fn own_cycles(&self) -> u64 {
         self.cycles() - self.interrupted
     }
 }
 
-/// The number of times that an interrupt was served, and the cycles of its handler.
+/// Statistics of one interrupt: the number of times that it was served, and the cycles of its handler.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct VectorUse {
-    /// Vector number, as in the data sheet's table minus one (0 is reset).
+    /// The vector number: that of the data sheet's table minus one (0 is reset).
     pub vector: u8,
-    /// The number of times that it was served.
+    /// The number of times that the interrupt was served.
     pub entries: u64,
     /// The sum of the cycles in its handler.
     pub cycles: u64,
 }
 
-/// The data sheet's name of an interrupt vector.
+/// Returns the data sheet's name of an interrupt vector.
 #[must_use]
 pub fn vector_name(vector: u8) -> &'static str {
     const NAMES: &str = "RESET INT0 INT1 PCINT0 PCINT1 PCINT2 WDT TIMER2_COMPA TIMER2_COMPB TIMER2_OVF \

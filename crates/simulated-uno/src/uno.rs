@@ -9,11 +9,11 @@ use crate::image::{Image, LoadError, SRAM_END};
 use crate::traces::{Call, Mark, VectorUse};
 use crate::{CYCLES_PER_MS, Edge, FREQUENCY, Pin, Pulse};
 
-/// The fidelity of the simulation.
+/// The model of the chip: stock simavr, or with corrections.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Fidelity {
-    /// Stock simavr 1.6: entering an interrupt takes no time, received bytes
-    /// are never lost, 16-bit registers cannot be torn.
+    /// Stock simavr 1.6: entering an interrupt takes no time, received bytes are never lost, 16-bit registers
+    /// cannot be torn.
     Stock,
     /// Corrected by the ATmega328P's data sheet: interrupt entry in 4 cycles (8
     /// from sleep), a two-byte receive buffer with overrun, 10-bit frames,
@@ -26,11 +26,11 @@ pub enum Fidelity {
 /// The state of the firmware.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum State {
-    /// Running or asleep with interrupts on.
+    /// Running, or asleep with interrupts enabled.
     Alive,
-    /// Asleep with interrupts off: nothing but a reset ends this.
+    /// Asleep with interrupts disabled: only a reset ends this.
     Halted,
-    /// An invalid instruction or address.
+    /// Stopped by an invalid instruction or address.
     Crashed {
         /// Byte address in flash.
         pc: u32,
@@ -60,7 +60,7 @@ pub struct Uno {
 unsafe impl Send for Uno {}
 
 impl Uno {
-    /// A board with this ELF file in flash, at the moment of power-on.
+    /// Returns a board with this ELF file in flash, at the moment of power-on.
     ///
     /// # Errors
     /// See [`LoadError`].
@@ -68,9 +68,8 @@ impl Uno {
         Ok(Self::with_image(Image::read(elf)?, fidelity))
     }
 
-    /// A board with this image in flash, at the moment of power-on. Its pins
-    /// D2 to D13 and A0 to A5 are recorded; D0 and D1 belong to the serial
-    /// line.
+    /// Returns a board with this image in flash, at the moment of power-on. Its pins D2 to D13 and A0 to A5 are
+    /// recorded; D0 and D1 belong to the serial line.
     #[must_use]
     pub fn with_image(image: Image, fidelity: Fidelity) -> Self {
         static LOGGER: Once = Once::new();
@@ -119,9 +118,8 @@ impl Uno {
         &self.state
     }
 
-    /// Runs until cycle `until`, or a few hundred cycles longer if an
-    /// instruction re-arms a timer at the end. A run in several parts has the same result as
-    /// one long run.
+    /// Runs until cycle `until`, or a few hundred cycles longer if an instruction re-arms a timer at the end. A run
+    /// in several parts gives the same result as one long run.
     pub fn run_until_cycle(&mut self, until: u64) -> &State {
         self.run_to(until, false);
         &self.state
@@ -137,8 +135,8 @@ impl Uno {
         self.run_cycles(ms * CYCLES_PER_MS)
     }
 
-    /// Runs until the predicate holds, which is checked every `step` cycles; true if it does. False
-    /// if `limit` cycles have passed, or the firmware has stopped.
+    /// Runs until the predicate holds, and checks it every `step` cycles. Returns true if it holds, and false if
+    /// `limit` cycles have passed or the firmware has stopped.
     pub fn run_until(
         &mut self,
         limit: u64,
@@ -193,7 +191,7 @@ impl Uno {
         self.take(ffi::uno_edges)
     }
 
-    /// The finished pulses among [`Uno::edges`].
+    /// The complete pulses of a pin among [`Uno::edges`].
     #[must_use]
     pub fn pulses(&self, pin: Pin) -> Vec<Pulse> {
         crate::pin::pulses(&self.edges(), pin)
@@ -218,10 +216,9 @@ impl Uno {
         self.take(ffi::uno_marks)
     }
 
-    /// Runs for `cycles` and times every call of the function at byte address
-    /// `entry` in flash (see [`Image::symbol`]). Slower than [`Uno::run_cycles`]:
-    /// it checks every instruction. Recursive calls count as part of the
-    /// outermost.
+    /// Runs for `cycles` and times every call of the function at byte address `entry` in flash (see
+    /// [`Image::symbol`]). Slower than [`Uno::run_cycles`], because it checks every instruction. Recursive calls
+    /// count as part of the outermost one.
     pub fn time_calls(&mut self, entry: u32, cycles: u64) -> Vec<Call> {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim compares `entry`
         // with the program counter and never follows it.
@@ -245,21 +242,21 @@ impl Uno {
         self.cycle() - self.asleep_cycles()
     }
 
-    /// The number of resets by the watchdog so far; [`Uno::reset_events`] has all resets.
+    /// The number of resets by the watchdog so far. [`Uno::reset_events`] lists all resets.
     #[must_use]
     pub fn resets(&self) -> u64 {
         // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
         unsafe { ffi::uno_resets(self.raw) }
     }
 
-    /// The largest size of the stack since power-on, bytes. SRAM contains noise at power-on; a
-    /// byte counts once it differs from that.
+    /// The largest size of the stack since power-on, bytes. At power-on, SRAM contains noise; a byte counts as used
+    /// once it differs from that noise.
     #[must_use]
     pub fn stack_used(&self) -> u16 {
         SRAM_END - self.stack_low()
     }
 
-    /// The smallest room between the stack and static data since power-on, bytes.
+    /// The smallest free space between the stack and static data since power-on, bytes.
     #[must_use]
     pub fn stack_spare(&self) -> u16 {
         self.stack_low() - self.image.data_end()
@@ -278,7 +275,7 @@ impl Uno {
         unsafe { ffi::uno_pc(self.raw) }
     }
 
-    /// The byte at a data address (registers, I/O or SRAM), 0 beyond SRAM.
+    /// The byte at a data address (registers, I/O or SRAM); 0 beyond SRAM.
     #[must_use]
     pub fn peek(&self, address: u16) -> u8 {
         // SAFETY: `raw` is valid, see `Uno`. The data space has `uno_data_size` bytes as long
@@ -290,7 +287,7 @@ impl Uno {
         data.get(usize::from(address)).copied().unwrap_or(0)
     }
 
-    /// The interrupts served so far; those never served are left out.
+    /// The interrupts served so far, without those that were never served.
     #[must_use]
     pub fn interrupts(&self) -> Vec<VectorUse> {
         // SAFETY: `raw` is valid, see `Uno`. It is an array of `VECTORS` items inside the
@@ -315,7 +312,7 @@ impl Uno {
         self.cycle() as f64 / FREQUENCY as f64
     }
 
-    /// The items of one of the shim's lists.
+    /// Copies the items of one of the shim's lists.
     pub(crate) fn list<Item: Copy>(&self, kind: ListOf) -> Vec<Item> {
         // SAFETY: `raw` is valid, see `Uno`. The callers pair each list with the type that
         // the shim keeps in it, whose size is compared; `count` items of it are filled in,
@@ -330,7 +327,7 @@ impl Uno {
         }
     }
 
-    /// The items of one of the shim's lists, which is empty afterwards.
+    /// Removes and returns the items of one of the shim's lists.
     pub(crate) fn take<Item: Copy>(&mut self, kind: ListOf) -> Vec<Item> {
         let items = self.list(kind);
         self.clear(kind);
@@ -344,7 +341,7 @@ impl Uno {
     }
 }
 
-/// One of the shim's functions that return a list.
+/// A function of the shim that returns one of its lists.
 type ListOf = unsafe extern "C" fn(*mut RawUno) -> *mut RawList;
 
 impl Drop for Uno {

@@ -1,9 +1,8 @@
-//! One wire with two talkers, as the UNO's D0 has where a radio module shares it with USB.
+//! A wire with two senders, such as the UNO's D0 where a radio module shares it with USB.
 //!
-//! Each talker pulls the wire low, and it is high while none does. If both talk at once, their bits
-//! mix, and the receiver reads bytes that neither has sent, some without a stop bit. What it has
-//! read is for [`Uno::send`](crate::Uno::send) and
-//! [`Uno::send_with_framing_error`](crate::Uno::send_with_framing_error).
+//! Each sender can pull the wire low; otherwise the wire is high. If both send at once, their bits mix, and the
+//! receiver reads bytes that neither has sent, some without a stop bit. Pass the bytes that it reads to
+//! [`Uno::send`](crate::Uno::send) and [`Uno::send_with_framing_error`](crate::Uno::send_with_framing_error).
 
 use std::collections::VecDeque;
 
@@ -11,9 +10,10 @@ use crate::FREQUENCY;
 
 /// Bits of a byte: start, eight data bits, stop.
 const FRAME: f64 = 10.0;
-/// The middle of the stop bit, in bits, where a receiver is done with a byte.
+/// The middle of the stop bit, in bits, at which a receiver has finished a byte.
 const STOP_BIT_MIDDLE: f64 = 9.5;
-/// More bytes of the fastest talker than a receiver of the slowest rate may take for one.
+/// Bytes of each sender that are searched for edges: more than the fastest sends while the slowest receiver reads
+/// one.
 const NEAR_BYTES: usize = 16;
 
 /// A byte on the wire.
@@ -21,7 +21,7 @@ const NEAR_BYTES: usize = 16;
 struct Frame {
     /// The cycle at which its start bit begins.
     start: f64,
-    /// Cycles of a bit.
+    /// Duration of a bit, cycles.
     bit: f64,
     byte: u8,
 }
@@ -38,19 +38,19 @@ impl Frame {
     }
 }
 
-/// A wire with two talkers, each with a rate of its own, and a receiver.
+/// A wire with two senders, each with its own rate, and a receiver.
 #[derive(Debug)]
 pub struct Wire {
-    /// Cycles of a bit of each talker.
+    /// Duration of a bit of each sender, cycles.
     bits: [f64; 2],
-    /// The bytes of each talker, in order.
+    /// The bytes of each sender, in order.
     talkers: [VecDeque<Frame>; 2],
     /// The cycle from which the receiver looks for the next byte.
     free: f64,
 }
 
 impl Wire {
-    /// An idle wire, with the rates of both talkers, baud.
+    /// Returns an idle wire, given the rates of both senders, baud.
     #[must_use]
     pub fn new(rates: [f64; 2]) -> Self {
         Self {
@@ -60,7 +60,7 @@ impl Wire {
         }
     }
 
-    /// Queues bytes of a talker, 0 or 1, which sends them back to back from this cycle on.
+    /// Queues bytes of a sender, 0 or 1, which sends them back to back from this cycle on.
     pub fn write(&mut self, talker: usize, bytes: &[u8], now: u64) {
         let bit = self.bits[talker];
         for byte in bytes {
@@ -74,7 +74,7 @@ impl Wire {
         }
     }
 
-    /// The bytes that a receiver of this rate has read by now, since the last call; `None` for one
+    /// Returns the bytes that a receiver of this rate has read since the last call, until now; `None` for a byte
     /// without a stop bit.
     pub fn receive(&mut self, now: u64, baud: f64) -> Vec<Option<u8>> {
         let bit = FREQUENCY as f64 / baud;
@@ -97,7 +97,7 @@ impl Wire {
         received
     }
 
-    /// The next moment at which the wire goes from high to low.
+    /// Returns the next time at which the wire goes from high to low.
     fn next_fall(&self) -> Option<f64> {
         let edges = self.near().flat_map(|frame| {
             (0..9).map(|index| (frame.start + f64::from(index) * frame.bit, frame.bit))
@@ -105,7 +105,7 @@ impl Wire {
         edges
             .filter(|(at, _)| *at > self.free)
             .filter(|(at, bit)| {
-                // A little after the edge, since the sums are rounded.
+                // Samples on both sides of the edge, since the sums are rounded.
                 let beside = bit / 100.0;
                 self.is_high(at - beside) && !self.is_high(at + beside)
             })
@@ -113,7 +113,7 @@ impl Wire {
             .min_by(f64::total_cmp)
     }
 
-    /// The bytes that may be on the wire until the next one is read.
+    /// Returns the bytes that may be on the wire until the next one is read.
     fn near(&self) -> impl Iterator<Item = &Frame> {
         self.talkers
             .iter()
@@ -129,7 +129,7 @@ impl Wire {
 mod tests {
     use super::*;
 
-    /// Cycles of a byte.
+    /// Duration of a byte, cycles.
     const BYTE: u64 = 1389;
 
     fn received(writes: &[(usize, &[u8], u64)]) -> Vec<Option<u8>> {
@@ -194,7 +194,7 @@ mod tests {
     #[test]
     fn a_fast_byte_at_a_slow_receiver_is_one_of_its_bits() {
         let mut wire = Wire::new([115_200.0; 2]);
-        // Twelve bits of the sender are one of the receiver, whose middle is the sixth or seventh.
+        // Twelve bits of the sender last as long as one of the receiver, which samples it in the sixth or seventh.
         wire.write(0, &[0x00], 0);
         assert_eq!(wire.receive(1_000_000, 9_600.0), [Some(0xff)]);
     }

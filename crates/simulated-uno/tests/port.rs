@@ -1,8 +1,7 @@
-//! The simulated UNO behind a serial port, as another program meets it.
+//! Tests of a simulated UNO behind a serial port, as another program uses it.
 //!
-//! A separate test binary. A process that another test forks would inherit the open port until
-//! its `exec`, so closing the port here would not close the last copy, and reopening it would
-//! not reset the board.
+//! This is a separate test binary: a process that another test forks would inherit the open port until its `exec`.
+//! Then closing the port here would not close the last copy, and reopening it would not reset the board.
 
 use std::fs::{File, OpenOptions};
 use std::io::{Read, Write};
@@ -15,8 +14,8 @@ use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 use simulated_uno::avr_gcc;
 use simulated_uno::{Background, CYCLES_PER_MS, FREQUENCY, Fidelity, Image, Pin, Port, Uno};
 
-/// Says `<r` at reset, then sends every byte back, plus one. D9 is high from
-/// reset on. GPIOR0 counts resets through a variable that reset does not clear.
+/// Program that sends `<r` at reset, then sends every byte back, plus one. D9 is high from reset on. GPIOR0 counts
+/// resets through a variable that a reset does not clear.
 const ECHO: &str = r#"
     #include <avr/io.h>
     static volatile unsigned char starts __attribute__((section(".noinit")));
@@ -38,7 +37,7 @@ const ECHO: &str = r#"
         }
     }"#;
 
-/// Compiled once, forced by [`echo`] before any port opens.
+/// The compiled program. [`echo`] forces the compilation before any port opens.
 static IMAGE: LazyLock<Image> = LazyLock::new(|| avr_gcc::c(ECHO));
 
 fn echo() -> Uno {
@@ -95,7 +94,7 @@ fn bytes_pass_both_ways_as_they_are() {
     let board = serve_board();
     let mut port = open(board.path());
     assert_eq!(read(&port, 2), "<r");
-    // What a terminal would swallow or change: CR, LF, interrupt, end of file.
+    // Bytes that a terminal would remove or change: CR, LF, interrupt, end of file.
     port.write_all(b"\r\n\x03\x04\x7f").expect("it takes bytes");
     assert_eq!(read(&port, 5), "\x0e\x0b\x04\x05\u{fffd}");
     drop(port);
@@ -111,9 +110,8 @@ fn a_program_at_another_speed_than_the_chip_reads_other_bytes() {
     settings.set_speed(57_600).expect("a speed");
     tcsetattr(&port, OptionalActions::Now, &settings).expect("settings accepted");
     port.write_all(b"0").expect("it takes bytes");
-    // The chip reads 0, as data_sheet/serial.rs has it, and sends 1. The host samples the byte
-    // at half the rate, at 3.1, 5.1 and 7.1 of the chip's bit times, which are 0, in its stop
-    // bit and in the silence.
+    // The chip reads 0, as tests/data_sheet/serial.rs explains, and sends 1. The host samples that byte at half the
+    // rate: at 3.1, 5.1 and 7.1 of the chip's bits, which are 0, then in the stop bit and on the idle line.
     assert_eq!(bytes(&port, 1), [0b1111_1000]);
     drop(port);
     stop_board(board);
@@ -187,8 +185,8 @@ fn the_chip_keeps_time_with_the_wall_clock() {
     serve(&mut port, &mut uno, 100);
     let wall = start.elapsed().as_secs_f64();
     let chip = uno.cycle() as f64 / FREQUENCY as f64;
-    // Never ahead by more than the slice under way. It may lag by any amount on a loaded
-    // machine, so only the lead is checked.
+    // The chip is never ahead by more than the current time slice. It may lag by any amount on a loaded machine, so
+    // the test checks only the lead.
     assert!(chip <= wall + 0.01, "{chip} s in {wall} s");
 }
 

@@ -1,5 +1,5 @@
-//! The simulated UNO behind a serial port of a program that starts others all the time:
-//! each has a copy of every open file between `fork` and `exec`, and keeps nothing open.
+//! Test of a simulated UNO behind a serial port, in a program that starts other programs all the time. Each new
+//! process has a copy of every open file between `fork` and `exec`, but no copy may keep the port open.
 
 use std::process::Command;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -9,7 +9,7 @@ use lizard_time_limit::LIMIT;
 use simulated_uno::avr_gcc;
 use simulated_uno::{Fidelity, Port, Uno};
 
-/// Says `<r` at reset.
+/// Program that sends `<r` at reset.
 const HELLO: &str = r#"
     #include <avr/io.h>
     static void put(unsigned char byte) {
@@ -22,10 +22,10 @@ const HELLO: &str = r#"
         for (;;) {}
     }"#;
 
-/// Opens the port that is its argument, reads two bytes, closes it.
+/// Shell script that opens the port in its argument, reads two bytes and closes it.
 const READER: &str = r#"exec 3<>"$0"; head -c 2 <&3"#;
 
-/// Openings, and at least as many other programs meanwhile.
+/// The smallest number of openings, and of other programs started meanwhile.
 const MIN_OPENINGS: usize = 150;
 
 static STARTED: AtomicUsize = AtomicUsize::new(0);

@@ -1,4 +1,4 @@
-//! The program `simulated-uno`, as its user sees it.
+//! Tests of the program `simulated-uno`, as its user runs it.
 
 use std::fs;
 use std::path::Path;
@@ -7,7 +7,7 @@ use std::process::{Command, Output};
 use lizard_time_limit::LIMIT;
 use simulated_uno::avr_gcc;
 
-/// Answers every line by `got` and its first letter.
+/// Program that answers every line with `got` and the line's first letter.
 const ECHO: &str = r#"
     #include <avr/io.h>
     static void put(const char *text) {
@@ -25,7 +25,7 @@ const ECHO: &str = r#"
         }
     }"#;
 
-/// D9 up for exactly 16 000 cycles, 1 ms, then down for 47 999 and more.
+/// Program that sets D9 high for exactly 16 000 cycles, 1 ms, then low for at least 47 999.
 const PULSES: &str = "
     #include <avr/io.h>
     int main(void) {
@@ -42,7 +42,7 @@ fn run(file: &Path, arguments: &[&str]) -> Output {
     LIMIT.output(&mut command, b"").expect("it runs")
 }
 
-/// The source as an ELF file and as one of Intel HEX.
+/// Compiles a source and returns the paths of its ELF and Intel HEX files.
 fn program(folder: &Path, source: &str) -> [std::path::PathBuf; 2] {
     let [c, elf, hex] = ["program.c", "program.elf", "program.hex"].map(|name| folder.join(name));
     fs::write(&c, source).expect("it is written");
@@ -57,7 +57,7 @@ fn program(folder: &Path, source: &str) -> [std::path::PathBuf; 2] {
     [elf, hex]
 }
 
-/// Runs a source, as Intel HEX.
+/// Compiles a source and runs it as Intel HEX.
 fn run_source(source: &str, arguments: &[&str]) -> Output {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let [_, hex] = program(folder.path(), source);
@@ -72,7 +72,7 @@ fn text(bytes: &[u8]) -> String {
 fn a_hex_file_and_its_elf_give_the_same_pulses() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let [elf, hex] = program(folder.path(), PULSES);
-    // Intel HEX does not say where the stack begins.
+    // Intel HEX does not say where the room for the stack begins.
     for (file, memory) in [(elf, true), (hex, false)] {
         let output = run(&file, &["--ms", "100"]);
         assert!(output.status.success(), "{output:?}");

@@ -4,7 +4,7 @@ use lizard_robot::servo::LEGS;
 use lizard_robot::{CheckedGait, Ground, Travel};
 use thiserror::Error;
 
-/// Smallest movement of a cycle that counts: mm, deg.
+/// Smallest movement in a cycle that is not regarded as zero: mm, deg.
 const MIN_MOVEMENT: (f64, f64) = (1.0, 0.5);
 
 fn is_left(servo: usize) -> bool {
@@ -15,7 +15,7 @@ fn is_front(servo: usize) -> bool {
     LEGS[servo].ends_with('F')
 }
 
-/// The error for a gait without a goal, by its name.
+/// The error for a gait that has no goal, with the gait's name.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum NoGoal {
     /// The gait's movement depends on a tie between two pairs of feet.
@@ -23,10 +23,10 @@ pub enum NoGoal {
         "the direction of the gait `{0}` is undecided, since two feet pull against two; tune another gait"
     )]
     Undecided(String),
-    /// It stands, or returns to its start.
+    /// The gait stands or returns to its start.
     #[error("the gait `{0}` goes nowhere")]
     Nowhere(String),
-    /// It walks along a curve.
+    /// The gait walks along a curve.
     #[error(
         "the gait `{0}` goes ahead and turns; tune a straight gait or a turn on the spot, and make \
          an arc of it with `like` and `gain`"
@@ -34,17 +34,17 @@ pub enum NoGoal {
     Arc(String),
 }
 
-/// The direction of a gait's movement, and its sign: ahead and to the left positive.
+/// The direction of a gait's movement, with a sign: forward and to the left are positive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Goal {
-    /// Straight ahead or back.
+    /// Straight forward or backward.
     Ahead(f64),
     /// A turn on the spot.
     Turn(f64),
 }
 
 impl Goal {
-    /// Finds the goal of a gait by its movement on rigid legs.
+    /// Derives the goal of a gait from its movement on rigid legs.
     ///
     /// # Errors
     /// Fails for a gait that stands, goes along a curve, or depends on ties.
@@ -66,7 +66,7 @@ impl Goal {
         }
     }
 
-    /// The part of a movement towards this goal, mm or deg.
+    /// The component of a movement towards this goal, mm or deg.
     pub fn progress(self, movement: &Travel) -> f64 {
         match self {
             Self::Ahead(sign) => sign * movement.forward,
@@ -74,7 +74,7 @@ impl Goal {
         }
     }
 
-    /// True if a movement has no part in other directions.
+    /// True if a movement has almost no component in other directions.
     pub fn is_true_to(self, movement: &Travel) -> bool {
         match self {
             Self::Ahead(_) => {
@@ -88,7 +88,7 @@ impl Goal {
     pub fn sign(self, servo: usize) -> f64 {
         match self {
             Self::Ahead(sign) => sign,
-            // In a turn to the left the left feet push forward.
+            // In a turn to the left, the left feet push forward.
             Self::Turn(sign) => {
                 if is_left(servo) {
                     -sign
@@ -99,7 +99,7 @@ impl Goal {
         }
     }
 
-    /// Index of the pair of partners that a leg belongs to: 0 for the pair of LH.
+    /// Index of the pair of legs that a leg belongs to: 0 for the pair that contains LH.
     pub fn pair(self, servo: usize) -> usize {
         match self {
             Self::Ahead(_) => usize::from(is_front(servo)),

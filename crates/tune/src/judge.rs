@@ -1,5 +1,5 @@
-//! The score of a gait: it is computed and checked like any gait of robot.toml, at the pace at
-//! which its fastest servo turns as fast as allowed, and walked on random robots.
+//! The score of a gait. The gait is computed and checked like any gait of robot.toml, at the pace at which its
+//! fastest servo turns at the speed limit, and then walked on random robots.
 
 use lizard_robot::{Bars, CheckedGait, Ground, Robot, Travel};
 use lizard_twin::ServoModel;
@@ -10,26 +10,26 @@ use crate::variation::{Variation, quantiles};
 
 /// Bounds of the search for a robot's largest amplitude, deg.
 const WIDTHS: (f64, f64) = (5.0, 80.0);
-/// The servos of the random robots: small strides lose a larger share to their dead band.
+/// The servos of the random robots, with a dead band, because it takes a larger share of small strides.
 const SERVOS: ServoModel = ServoModel::SG90;
-/// A period at which no servo is too fast, for measuring their speed, s.
+/// A period so long that no servo exceeds its speed limit, for measuring their speed, s.
 const SLOW_PERIOD_S: f64 = 3.0;
-/// Rounds of fitting the period to the rate.
+/// Number of iterations that fit the period to the servo speed.
 const FITS: usize = 3;
-/// The share of the robots that may be slower than the score.
+/// The share of the robots that may be slower than the score says.
 const SLOWEST_SHARE: f64 = 0.05;
 
 /// A gait with its period and its table for robot.toml.
 #[derive(Debug, Clone)]
 pub struct BuiltGait {
-    /// The robot with this gait and `stand` alone.
+    /// The robot with only this gait and `stand`.
     robot: Robot,
     table: String,
 }
 
 impl BuiltGait {
-    /// Builds a gait with the shortest period at which no servo is faster than `rate` (deg/s);
-    /// none if a limit of the robot forbids it.
+    /// Builds a gait with the shortest period at which no servo is faster than `rate` (deg/s). Returns `None` if a
+    /// limit of the robot forbids it.
     pub(crate) fn of(robot: &Robot, bars: &Bars, rate: f64) -> Option<Self> {
         let build = |period: f64| {
             let bars = Bars {
@@ -53,7 +53,8 @@ impl BuiltGait {
                 fits = Some(built.clone());
             }
         }
-        // The speed of a frame depends on its phase, so a shorter period may do as well.
+        // The peak speed depends on the phases of the frames, so a slightly shorter period may also be within the
+        // rate.
         let shorter = build(fits.as_ref()?.gait().period() - 0.01);
         shorter.filter(|shorter| shorter.peak() <= rate).or(fits)
     }
@@ -96,11 +97,11 @@ impl BuiltGait {
 
 /// Rounds a period up to hundredths of a second, at least 0.2.
 fn round_period(period: f64) -> f64 {
-    // A rounding error must not lead to the next hundredth.
+    // A rounding error must not raise the period to the next hundredth.
     ((period * 100.0 - 1e-6).ceil() / 100.0).max(0.2)
 }
 
-/// Random robots on which gaits are scored.
+/// The random robots on which gaits are scored.
 #[derive(Debug, Clone)]
 pub struct Judge {
     robot: Robot,
@@ -110,7 +111,7 @@ pub struct Judge {
 }
 
 impl Judge {
-    /// Makes `robots` random robots around this one on this ground, from consecutive seeds.
+    /// Draws `robots` random variations of this robot on this ground, from consecutive seeds.
     pub fn new(robot: &Robot, ground: &Ground, goal: Goal, robots: usize, seed: u64) -> Self {
         let of = |n: u64| Variation::of(ground, seed.wrapping_add(n));
         Self {
@@ -138,20 +139,20 @@ impl Judge {
         self.goal
     }
 
-    /// Follows a cycle in fine steps on the robot itself, with ideal servos.
+    /// Follows a cycle on the robot itself in fine steps, with ideal servos.
     pub fn cycle(&self, gait: &CheckedGait) -> Travel {
         gait.walked(&self.ground).travel
     }
 
-    /// Follows a cycle frame by frame on the robot itself.
+    /// Follows a cycle on the robot itself frame by frame.
     fn cycle_by_frames(&self, gait: &CheckedGait) -> Travel {
         Variation::none(&self.ground).walked(&self.robot, gait, SERVOS)
     }
 
-    /// Computes the speed that 95 % of the robots exceed; `None` for a gait that does not lead
-    /// straight to its goal on the robot itself.
+    /// Computes the speed that 95 % of the robots exceed. `None` for a gait that does not move straight towards its
+    /// goal on the robot itself.
     pub fn score(&self, gait: &CheckedGait) -> Option<f64> {
-        // In fine steps, because a period may not be a whole number of frames.
+        // Checked in fine steps, because a period may not be a whole number of frames.
         if !self.goal.is_true_to(&self.cycle(gait)) {
             return None;
         }
@@ -202,7 +203,7 @@ mod tests {
 
     #[test]
     fn a_gait_beyond_a_limit_is_not_built() {
-        // 45 deg to either side take the legs beyond their margin.
+        // At 45 deg in both directions, the legs leave less than their margin.
         let wide = plan(45.0, 1.0);
         assert!(BuiltGait::of(&paper(), &wide, 250.0).is_none());
     }

@@ -1,26 +1,25 @@
-//! The search: differential evolution (R. Storn, K. Price, *Journal of Global Optimization*
-//! 11, 1997; towards one of the best, as J. Zhang and A. Sanderson do, *IEEE Transactions on
-//! Evolutionary Computation* 13, 2009). It needs no slope, copes with refused trials and is a
-//! page long.
+//! Differential evolution (R. Storn, K. Price, *Journal of Global Optimization* 11, 1997), with steps towards one
+//! of the best members (J. Zhang, A. Sanderson, *IEEE Transactions on Evolutionary Computation* 13, 2009). It needs
+//! no gradient, copes with refused trials and is a page long.
 //!
-//! The search does not score: its caller takes the trials of a round, scores them in any order,
-//! and gives the scores back. Random numbers come from one seed and in one order, so the
-//! same seed finds the same gait on every machine.
+//! The search does not compute scores: its caller takes the trials of a round, scores them in any order, and
+//! returns the scores. Random numbers come from one seed in a fixed order, so the same seed finds the same gait on
+//! every machine.
 
 use fastrand::Rng;
 
-/// Members of the population.
+/// Number of members of the population.
 const MEMBERS: usize = 20;
-/// Number of leaders: a trial goes towards one of them, so the search does not get stuck on one
-/// hill.
+/// Number of leaders. A trial moves towards one of several leaders, so that the search does not end at the first
+/// local maximum.
 const LEADERS: usize = 5;
-/// Share of a member's parameters that a trial changes on average.
+/// Share of a member's parameters that a trial changes, on average.
 const CHANGED: f64 = 0.9;
-/// Factor of the difference of two members: uniform within these, drawn for each trial.
+/// Bounds of the factor on the difference of two members; each trial draws it uniformly.
 const STEPS: (f64, f64) = (0.4, 0.9);
 
-/// The number of trials of a [`Search`] with this number of rounds; the first population is
-/// scored before the first round.
+/// Returns the number of trials of a [`Search`] with this number of rounds, including the first population, which
+/// is scored before the first round.
 pub const fn trials(rounds: usize) -> usize {
     MEMBERS * (rounds + 1)
 }
@@ -43,7 +42,7 @@ pub struct Search {
 }
 
 impl Search {
-    /// Starts with these parameters and with random ones.
+    /// Starts a search with these parameter sets, filled up with random ones.
     pub fn new(start: &[Vec<f64>], seed: u64) -> Self {
         let mut rng = Rng::with_seed(seed);
         let parameters = start.first().map_or(0, Vec::len);
@@ -56,7 +55,7 @@ impl Search {
         }
     }
 
-    /// The parameters of this round, to be scored.
+    /// The parameter sets of this round, to be scored.
     pub fn trials(&self) -> &[Vec<f64>] {
         &self.trials
     }
@@ -95,9 +94,9 @@ fn score_of(member: &Member) -> f64 {
     member.score.unwrap_or(f64::NEG_INFINITY)
 }
 
-/// Makes a trial from a member: a step towards one of the best and along the difference of two
-/// others, crossed with the member itself. A parameter that would leave 0 to 1 goes halfway to
-/// the bound.
+/// Makes a trial from a member: a step towards one of the best members plus a step along the difference of two
+/// others, crossed with the member itself. A parameter that would leave the range 0 to 1 moves halfway to the bound
+/// instead.
 fn trial(members: &[Member], of: usize, rng: &mut Rng) -> Vec<f64> {
     let own = &members[of].parameters;
     let mut ranks: Vec<&Member> = members.iter().collect();
@@ -126,7 +125,7 @@ fn trial(members: &[Member], of: usize, rng: &mut Rng) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    /// A narrow curved ridge with its top at (0.7, 0.49), and a quarter of the square refused.
+    /// A score with a narrow curved ridge and its top at (0.7, 0.49); trials with x + y up to 0.5 are refused.
     fn ridge(at: &[f64]) -> Option<f64> {
         let (x, y) = (at[0], at[1]);
         let error = 40.0 * (y - x * x).powi(2) + (x - 0.7).powi(2);

@@ -1,4 +1,4 @@
-//! The task of the search: to find a faster gait than a given one, for a robot on a floor.
+//! The tuning task: to find a faster gait than a given one, for a robot on a floor.
 
 use lizard_robot::{CheckedGait, Ground, Robot};
 use thiserror::Error;
@@ -9,11 +9,11 @@ use crate::judge::{BuiltGait, Judge};
 use crate::plan::{Kind, Space, planned};
 use crate::search::Search;
 
-/// Random robots that a gait is judged by while it is searched.
+/// Number of random robots on which the search scores a gait.
 const JUDGES: usize = 16;
-/// First seed of the robots of the comparison, which the search has not used.
+/// First seed of the comparison's robots, which the search has not used.
 const FRESH: u64 = 1 << 40;
-/// Slowest servos that walk, deg/s.
+/// Smallest servo speed that is accepted, deg/s.
 const MIN_SERVO_SPEED: f64 = 10.0;
 
 /// The error for a gait that cannot be tuned.
@@ -22,13 +22,13 @@ pub enum NoTuning {
     /// The gait has no goal.
     #[error(transparent)]
     Goal(#[from] NoGoal),
-    /// Servos so slow that the robot does not walk, or faster than its limits allow.
+    /// The requested servo speed is too low for walking, or higher than the robot's limits allow.
     #[error(
         "{rate}: from {smallest} to {most} deg/s, which is limits.gait_slew in robot.toml",
         smallest = MIN_SERVO_SPEED
     )]
     Rate {
-        /// The speed of the servos that was asked for, deg/s.
+        /// The requested servo speed, deg/s.
         rate: f64,
         /// The largest speed allowed, deg/s.
         most: f64,
@@ -52,7 +52,7 @@ pub struct Tuning {
     robot: Robot,
     ground: Ground,
     gait: CheckedGait,
-    /// Name of the gaits that are found.
+    /// Name of the gaits that the search finds.
     name: String,
     rate: f64,
     space: Space,
@@ -61,10 +61,9 @@ pub struct Tuning {
 }
 
 impl Tuning {
-    /// Prepares the search of a faster gait on this ground, with servos that turn at `rate`
-    /// (deg/s) or as fast as in the given gait. The gaits found get this name, which must be
-    /// valid in a robot.toml. Takes as long as a few trials, because it finds the widest stride
-    /// that the robot's limits allow.
+    /// Prepares the search for a faster gait on this ground, with servos that turn at `rate` (deg/s) or, if `None`,
+    /// as fast as in the given gait. The gaits found get this name, which must be valid in a robot.toml. Takes as
+    /// long as a few trials, because it finds the widest stride that the robot's limits allow.
     ///
     /// # Errors
     /// Fails for a gait that neither goes straight nor turns on the spot, or a rate out of range.
@@ -101,14 +100,14 @@ impl Tuning {
         self.rate
     }
 
-    /// Starts the search of a kind of gait. Kinds do not depend on each other.
+    /// Starts the search for a kind of gait. The searches are independent of each other.
     pub fn search(&self, kind: Kind) -> Search {
         Search::new(&kind.begin(), self.seed.wrapping_add(kind as u64))
     }
 
-    /// Scores a gait by the speed that 95 % of the random robots exceed, mm/s or deg/s; `None` if
-    /// the robot's limits forbid it, or it leads elsewhere. Takes some hundredths of a second to
-    /// some tenths.
+    /// Scores a gait by the speed that 95 % of the random robots exceed, mm/s or deg/s. `None` if the robot's
+    /// limits forbid the gait, or if it moves in another direction. Takes a few hundredths to a few tenths of a
+    /// second.
     pub fn score(&self, kind: Kind, parameters: &[f64]) -> Option<f64> {
         self.judge.score(self.build(kind, parameters)?.gait())
     }
@@ -136,7 +135,7 @@ impl Tuning {
     }
 }
 
-/// The largest speed of servos: the one asked for, or that of the gait.
+/// Returns the speed limit of the servos: the requested one or, without a request, the gait's own peak speed.
 fn allowed(robot: &Robot, gait: &CheckedGait, asked: Option<f64>) -> Result<f64, NoTuning> {
     let Some(rate) = asked else {
         return Ok(gait.audit().peak.speed);

@@ -1,5 +1,4 @@
-//! Random robots and floors, which differ by the uncertainty of a print, a floor and a kitchen
-//! scale.
+//! Random robots and floors: they vary within the uncertainty of printed parts, a floor and a kitchen scale.
 
 use fastrand::Rng;
 use lizard_robot::{
@@ -7,31 +6,32 @@ use lizard_robot::{
 };
 use lizard_twin::{FRAME, ServoModel};
 
-/// Phases of a cycle.
+/// Number of phases in a cycle.
 const PHASES: f64 = 65536.0;
 
-/// Spread of friction: a factor on robot.toml's value, uniform within these bounds. The other
-/// constants are likewise factors, or mm and deg to either side.
+/// Range of the random factor on robot.toml's friction. The constants below are also ranges of factors, or largest
+/// deviations in mm and deg.
 pub const FRICTION: (f64, f64) = (0.5, 1.5);
 const PADS: (f64, f64) = (0.9, 1.1);
 const CENTRE: f64 = 8.0;
 const MOUNT: f64 = 4.0;
 const HIPS: f64 = 2.0;
 const SPRING: (f64, f64) = (0.8, 1.2);
-/// Leaves of feet: a print has their thickness to a fifteenth, and it counts three times.
+/// Range of the factor on the stiffness of the feet's leaves. It grows with the cube of their thickness, which a
+/// print keeps within a fifteenth.
 const LEAF: (f64, f64) = (0.8, 1.25);
-/// Largest play that is added to a leg's, deg.
+/// Largest random play that is added to that of the legs, deg.
 const PLAY: f64 = 1.0;
 
-/// The spread of random robots in words.
+/// Description of the range of the random robots.
 pub const SPREAD: &str = "friction x 0.5 to 1.5, each pad's x 0.9 to 1.1, backward over forward x 0.9 to 1.1, mass centre +-8 mm,\n\
 mounting +-4 deg, hips +-2 mm, springs x 0.8 to 1.2, leaves of feet x 0.8 to 1.25, a foot longer by\n\
 -1 to 1 times what [feet] level says";
 
-/// The addition of [`Variation::with_play`] in words.
+/// Description of the play that [`Variation::with_play`] adds.
 pub const PLAY_SPREAD: &str = "play of the legs 0 to 1 deg more";
 
-/// A robot and a floor that differ at random from those of robot.toml.
+/// A robot and a floor that differ randomly from those of robot.toml.
 #[derive(Debug, Clone, Copy)]
 pub struct Variation {
     ground: Ground,
@@ -42,7 +42,7 @@ pub struct Variation {
 }
 
 impl Variation {
-    /// Draws a robot and a floor around this ground from a seed.
+    /// Draws a random robot and floor around this ground from a seed.
     pub fn of(ground: &Ground, seed: u64) -> Self {
         let mut rng = Rng::with_seed(seed);
         let mut within = |(low, high): (f64, f64)| low + (high - low) * rng.f64();
@@ -88,16 +88,16 @@ impl Variation {
         }
     }
 
-    /// Adds random play to the legs, which takes longer to walk.
+    /// Adds random play to the legs. Walking then takes longer to compute.
     #[must_use]
     pub fn with_play(mut self, seed: u64) -> Self {
-        // Drawn separately, so that all other values stay the same.
+        // Play has its own random sequence, so that all other values stay the same.
         let mut rng = Rng::with_seed(seed ^ 0x9E37_79B9_7F4A_7C15);
         self.ground.drive.play += PLAY * rng.f64();
         self
     }
 
-    /// The ground without variation.
+    /// Returns the given ground without any variation.
     pub fn none(ground: &Ground) -> Self {
         Self {
             ground: *ground,
@@ -106,8 +106,7 @@ impl Variation {
         }
     }
 
-    /// Follows the second cycle of a gait, which all later ones repeat, frame by frame with
-    /// these servos.
+    /// Follows the second cycle of a gait frame by frame with these servos. All later cycles repeat the second.
     pub fn walked(&self, robot: &Robot, gait: &CheckedGait, model: ServoModel) -> Travel {
         let mut sweeps = gait.sweeps(gait.phase(0.0));
         let targets = |phase: u16| gait.sweeps(f64::from(phase) / PHASES);
@@ -152,7 +151,7 @@ impl Variation {
     }
 }
 
-/// The values below which these shares of all values lie, by nearest rank.
+/// Returns the values below which these shares of all values lie, by nearest rank.
 pub fn quantiles<const N: usize>(mut values: Vec<f64>, shares: [f64; N]) -> [f64; N] {
     values.sort_by(f64::total_cmp);
     let last = values.len().saturating_sub(1);
@@ -231,7 +230,7 @@ mod tests {
                     let movement = Variation::none(robot.ground()).walked(&robot, gait, model);
                     let twin = Twin::new(&robot, model).cycle(gait).travel();
                     let error = (movement.forward - twin.forward).hypot(movement.turn - twin.turn);
-                    // The twin reads waveforms of 64 samples, a search the gait itself.
+                    // The twin reads the firmware's tables of 64 samples; the variation computes the gait itself.
                     assert!(error < 0.4, "{name} {movement:?} {twin:?}");
                 }
             }

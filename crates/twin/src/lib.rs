@@ -1,10 +1,9 @@
-//! The robot behind its pulses: the movement of body, legs and feet that a board's pulses cause.
+//! Simulated twin of the robot: the movement of body, legs and feet that a board's servo pulses cause.
 //!
-//! A frame's four pulses go to the servos ([`ServoModel`]: their motors), the
-//! servos turn the linkage, struts or springs pull the legs along, and the contact model
-//! (`lizard_contact`) computes the movement of the body over the floor. [`Twin::push`] takes one
-//! frame and returns the result as a [`State`]. The crate reads, stores and prints nothing, so a
-//! program, a test and a web page can use it.
+//! A frame's four pulses go to the servos (see [`ServoModel`]), the servos turn the linkage, struts or springs pull
+//! the legs along, and the contact model (`lizard_contact`) computes the movement of the body over the floor.
+//! [`Twin::push`] takes one frame and returns the result as a [`State`]. The crate reads, stores and prints
+//! nothing, so a program, a test and a web page can use it.
 //!
 //! # When not to use it
 //! The model is planar: feet do not lift or tilt, and links do not bend. Where this
@@ -12,10 +11,10 @@
 //! without pulses and servos, `lizard_robot::CheckedGait::predict` is enough.
 //!
 //! # Units
-//! mm, degrees, seconds and microseconds, as their names say; a heading is in radians.
-//! Servo order A1, A2, A3, A4 in every array, which is legs LF, RF, RH, LH. Points on
-//! the floor are (forward, left) as the robot stood at first; points of a [`Shape`] are
-//! in the chassis frame of `lizard_kinematics`: x to the robot's right, y forward.
+//! mm, degrees, seconds and microseconds, as their names say; a heading is in radians. Servo order A1, A2, A3, A4
+//! in every array, which is legs LF, RF, RH, LH. Points on the floor are (forward, left), seen from the robot's
+//! first place; points of a [`Shape`] are in the chassis frame of `lizard_kinematics`: x to the robot's right, y
+//! forward.
 
 mod servo;
 mod shape;

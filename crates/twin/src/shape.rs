@@ -1,10 +1,10 @@
-//! The places of all joints, for pictures of the robot.
+//! The positions of all joints, for pictures of the robot.
 
 use lizard_contact::FORWARD;
 use lizard_kinematics::{End, Side, Solution, Vector};
 use lizard_robot::{LegPlace, Robot};
 
-/// The joints of a robot, mm, chassis frame.
+/// The positions of a robot's joints, mm, chassis frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shape {
     /// Shafts of the servos.
@@ -13,9 +13,9 @@ pub struct Shape {
     pub tips: [Vector; 4],
     /// Tips of the arms that carry the sliders.
     pub arms: [Vector; 4],
-    /// Points of head and tail.
+    /// End points of head and tail, where their two links meet.
     pub ends: [Vector; 2],
-    /// Legs, which may lag behind their servos.
+    /// The legs, which may lag behind their servos.
     pub legs: [LegPlace; 4],
 }
 
@@ -27,7 +27,7 @@ impl Shape {
         Some(Self::at_solution(robot, &solved, legs))
     }
 
-    /// Computes the joints of a pose that is solved already.
+    /// Computes the joints of a solved pose.
     pub fn at_solution(robot: &Robot, solved: &Solution, legs: [f64; 4]) -> Self {
         let shafts = robot.lizard().shafts();
         let tips = solved.crank_tips();

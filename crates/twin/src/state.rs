@@ -1,4 +1,4 @@
-//! The state of the robot after a frame.
+//! The state of the robot after a frame, as the twin reports it.
 
 use lizard_contact::Place;
 use lizard_kinematics::{Check, Margins};
@@ -6,21 +6,21 @@ use lizard_kinematics::{Check, Margins};
 /// The state of the robot after a frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State {
-    /// Number of frames so far; the first is 1.
+    /// Number of frames so far, including this one: the first is 1.
     pub frame: u64,
     /// True for each servo that had a pulse.
     pub pulsed: [bool; 4],
-    /// Place of the body on the floor.
+    /// Position and heading of the body on the floor.
     pub place: Place,
     /// Actual servo angles, deg, chassis frame.
     pub angles: [f64; 4],
     /// Speeds of the servos, deg/s, counter-clockwise positive.
     pub rates: [f64; 4],
-    /// Errors of the servos against their pulses, deg.
+    /// Pulse angles minus actual angles of the servos, deg.
     pub errors: [f64; 4],
     /// Lag of each leg behind its servo, deg, foot forward positive.
     pub lag: [f64; 4],
-    /// Places of the feet on the floor: (forward, left), mm.
+    /// Positions of the feet on the floor: (forward, left), mm.
     pub feet: [[f64; 2]; 4],
     /// Distance that each foot slid over the floor in this frame, mm.
     pub slip: [f64; 4],
@@ -33,7 +33,7 @@ pub struct State {
 }
 
 impl State {
-    /// The name and the value of the smallest margin.
+    /// The smallest margin: its name and its value.
     pub fn least_margin(&self) -> Option<(Check, f64)> {
         self.margins.map(|margins| margins.min())
     }

@@ -6,7 +6,7 @@ use lizard_kinematics::Check;
 use crate::FRAME;
 use crate::state::State;
 
-/// The sums and extremes of a stretch of frames.
+/// The sums and extremes over a sequence of frames.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tally {
     begin: Place,
@@ -21,16 +21,16 @@ pub struct Tally {
     pub lag: f64,
     /// Name and value of the smallest margin.
     pub margin: Option<(Check, f64)>,
-    /// Least and greatest slider travel, mm; none before the first frame.
+    /// Smallest and greatest slider travel, mm; `None` before the first frame.
     pub stroke: Option<[f64; 2]>,
-    /// Fastest turn of a servo, deg/s.
+    /// Highest speed of a servo, deg/s.
     pub rate: f64,
     /// Largest error of a servo against its pulse, deg.
     pub error: f64,
 }
 
 impl Tally {
-    /// Starts at this place, without frames.
+    /// Returns a tally of no frames that starts at this place.
     pub fn new(start: Place) -> Self {
         Self {
             begin: start,

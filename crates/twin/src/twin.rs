@@ -1,4 +1,4 @@
-//! The robot on a floor, moved frame by frame by its pulses.
+//! Simulation of the robot on a floor, moved frame by frame by its servo pulses.
 
 use lizard_contact::{FORWARD, Ground, Place, Walker};
 use lizard_kinematics::wrap;
@@ -22,7 +22,7 @@ pub struct Twin {
 }
 
 impl Twin {
-    /// Makes a robot that stands at neutral without pulses, its springs at rest.
+    /// Returns a robot that stands at neutral without pulses, its springs relaxed.
     pub fn new(robot: &Robot, model: ServoModel) -> Self {
         Self {
             robot: robot.clone(),
@@ -33,24 +33,23 @@ impl Twin {
         }
     }
 
-    /// Follows a frame of 20 ms: the width of each servo's pulse in us, `None` without a pulse. A
-    /// servo without a pulse does not turn, because its gears hold it.
+    /// Simulates a frame of 20 ms with the width of each servo's pulse in us, `None` without a pulse. A servo
+    /// without a pulse does not turn, because its gears hold it.
     pub fn push(&mut self, pulses: [Option<f64>; 4]) -> State {
         let servos = self.robot.servos();
         let targets = std::array::from_fn(|i| pulses[i].map(|width| servos[i].sweep(width)));
         self.turn(targets)
     }
 
-    /// Follows a frame of 20 ms with the pulses for these servo angles: deg, chassis
-    /// frame.
+    /// Simulates a frame of 20 ms with the pulses for these servo angles: deg, chassis frame.
     pub fn push_angles(&mut self, angles: [f64; 4]) -> State {
         let servos = self.robot.servos();
         let targets = std::array::from_fn(|i| Some(wrap(angles[i] - servos[i].neutral)));
         self.turn(targets)
     }
 
-    /// Follows a frame in which the servos turn towards these sweeps from neutral, deg,
-    /// counter-clockwise positive.
+    /// Simulates a frame in which the servos turn towards these sweeps from neutral, deg, counter-clockwise
+    /// positive.
     fn turn(&mut self, targets: [Option<f64>; 4]) -> State {
         let before = self.sweeps;
         let servos = self.robot.servos();
@@ -110,7 +109,7 @@ impl Twin {
         &self.robot
     }
 
-    /// The present joints, chassis frame; `None` if a loop does not close.
+    /// The present positions of the joints, chassis frame; `None` if a loop does not close.
     pub fn shape(&self) -> Option<Shape> {
         Shape::of(&self.robot, self.angles(), self.legs())
     }
@@ -125,7 +124,7 @@ impl Twin {
         self.walker.legs()
     }
 
-    /// The floor, the pads and the drive of the legs.
+    /// The present model of the floor, the pads and the drive of the legs.
     pub fn ground(&self) -> &Ground {
         self.walker.ground()
     }
@@ -135,8 +134,8 @@ impl Twin {
         self.walker.set_ground(ground);
     }
 
-    /// Follows the second cycle of a gait at full speed, started at neutral, with the present
-    /// ground and servos. This twin itself does not move.
+    /// Simulates two cycles of a gait at full speed from neutral, with the present ground and servos, and returns
+    /// the tally of the second. This twin itself does not move.
     pub fn cycle(&self, gait: &CheckedGait) -> Tally {
         let mut twin = Self::new(&self.robot, self.model);
         twin.set_ground(*self.ground());
@@ -165,7 +164,7 @@ impl Twin {
         self.walker.set_place(place);
     }
 
-    /// Sweeps of the legs if they did not lag: deg, foot forward positive.
+    /// The sweeps that the legs would have without lag: deg, foot forward positive.
     fn leg_sweeps(&self) -> [f64; 4] {
         std::array::from_fn(|i| FORWARD[i] * self.sweeps[i])
     }

@@ -1,4 +1,4 @@
-//! Frames pushed one by one, compared with the prediction for the gait.
+//! Tests of the twin: frames pushed one by one move the robot as predicted for the gait.
 
 use lizard_robot::{CheckedGait, Drive, Ground, Kind, Place, Robot};
 use lizard_twin::{ServoModel, Tally, Twin, Unloaded};
@@ -7,13 +7,13 @@ fn paper() -> Robot {
     Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is right")
 }
 
-/// The pulse widths of a gait's frame by the firmware's table, us.
+/// Returns the pulse widths of a gait's frame by the firmware's table, us.
 fn widths(robot: &Robot, gait: &CheckedGait, phase: u16) -> [Option<f64>; 4] {
     let angles = gait.table_angles(phase);
     std::array::from_fn(|i| Some(robot.servos()[i].pulse(angles[i])))
 }
 
-/// Follows the fourth cycle of a gait.
+/// Simulates four cycles of a gait and returns the tally of the last.
 fn cycle(robot: &Robot, name: &str, model: ServoModel, ground: &Ground) -> Tally {
     let gait = robot.gait(name).expect(name);
     let mut twin = Twin::new(robot, model);
@@ -70,7 +70,7 @@ fn a_dead_band_costs_its_share_of_the_stroke() {
             .forward
     };
     let (ideal, sg90) = (walk(ServoModel::Ideal), walk(ServoModel::SG90));
-    // A degree of 40 is lost where a leg turns round.
+    // The dead band takes 1 of 40 degrees when a leg reverses.
     assert!((sg90 / ideal - 39.0 / 40.0).abs() < 0.01, "{sg90} {ideal}");
 }
 

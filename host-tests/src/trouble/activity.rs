@@ -1,4 +1,4 @@
-//! The robot's activity when trouble comes.
+//! Activities of the robot during which trouble begins.
 
 use std::fmt;
 
@@ -7,28 +7,28 @@ use std::fmt;
 pub enum Activity {
     /// The robot rests, or has just received `rest`.
     Resting,
-    /// The servos wake after a rest.
+    /// The servos start after a rest.
     Waking,
     /// The robot holds a pose or stands.
     Holding,
-    /// The robot goes from one pose to another.
+    /// The robot moves from one pose to another.
     Moving,
     /// The robot walks.
     Cycling,
     /// The robot writes the EEPROM.
     Saving,
-    /// The program has just begun.
+    /// The program has just started.
     Starting,
     /// The robot answers a question.
     Talking,
-    /// The robot goes through its routine, and its contacts close and open.
+    /// The robot performs its routine, and its contacts close and open.
     Patrolling,
     /// A person drives the robot by radio.
     Driving,
 }
 
 impl Activity {
-    /// All of them.
+    /// All activities.
     pub const ALL: [Self; 10] = [
         Self::Resting,
         Self::Waking,
@@ -42,7 +42,7 @@ impl Activity {
         Self::Driving,
     ];
 
-    /// The activity of a scenario by its number: four in thirteen are drives.
+    /// Returns the activity of the scenario with this number: four of thirteen are drives.
     #[must_use]
     pub fn of(number: u64) -> Self {
         let index = (number % 13) as usize;

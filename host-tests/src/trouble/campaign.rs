@@ -1,4 +1,4 @@
-//! Many scenarios on all cores, and their results.
+//! Campaign of many scenarios on all cores, and its results.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -37,11 +37,11 @@ impl fmt::Display for Failure {
 /// The results of many scenarios.
 #[derive(Debug, Default)]
 pub struct Summary {
-    /// The numbers of scenarios that were played and that failed, by activity.
+    /// The number of scenarios played and the number failed, by activity.
     pub activities: BTreeMap<Activity, (u64, u64)>,
     /// Failed scenarios, in order of number.
     pub failures: Vec<Failure>,
-    /// Simulated cycles.
+    /// The number of simulated cycles.
     pub cycles: u64,
 }
 
@@ -66,7 +66,7 @@ impl fmt::Display for Summary {
     }
 }
 
-/// Plays and judges one scenario; returns its cycles, and the failure if a rule is broken.
+/// Plays and judges one scenario. Returns its cycles, and a failure if a rule is broken.
 #[must_use]
 pub fn judge(image: &Image, robot: &Robot, scenario: &Scenario) -> (u64, Option<Failure>) {
     let record = play(image, robot, scenario);
@@ -78,8 +78,8 @@ pub fn judge(image: &Image, robot: &Robot, scenario: &Scenario) -> (u64, Option<
     (record.end, failure)
 }
 
-/// Plays the scenarios `0..count` of a seed on `threads` threads; `progress` gets the
-/// number of scenarios done, and the failure of the last.
+/// Plays the scenarios `0..count` of a seed on `threads` threads. `progress` gets the number of scenarios done, and
+/// the failure of the last one.
 pub fn campaign(
     image: &Image,
     robot: &Robot,

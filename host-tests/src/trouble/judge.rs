@@ -1,4 +1,5 @@
-//! Converts a record to events for the observer, and checks the rules that need the record.
+//! Judge of a scenario: converts its record to events for the observer, and checks the rules that need the whole
+//! record.
 
 use lizard_core::console::word::Effect;
 use lizard_core::memory::restart::Cause;
@@ -12,13 +13,13 @@ use super::record::{Exchange, MS, Record, Span};
 use super::scenario::Scenario;
 use super::setup::WIDE_SCALE;
 
-/// The LED.
+/// The pin of the LED.
 const LED: Pin = Pin::d(13);
 
-/// Cycles of a byte on the line.
+/// Cycles of a byte on the serial line.
 const BYTE: u64 = 1_360;
 
-/// The limits of a scenario's robot.
+/// Returns the limits for a scenario's robot.
 fn limits(robot: &Robot, scenario: &Scenario) -> Limits {
     let cycles = |us: f64| (us * 16.0).round() as u32;
     let pace = robot.pace();
@@ -27,7 +28,7 @@ fn limits(robot: &Robot, scenario: &Scenario) -> Limits {
         let mut steps = scenario.steps.iter();
         steps.any(|step| step.to_string().contains(text))
     };
-    // If a servo's numbers are changed, the larger of both.
+    // If the scenario changes a servo's scale, the larger of both scales counts.
     let wide = if mentions("scale ") { WIDE_SCALE } else { "0" };
     let wide: f64 = wide.parse().expect("a number");
     let servos = robot.servos().each_ref();
@@ -48,7 +49,7 @@ fn limits(robot: &Robot, scenario: &Scenario) -> Limits {
     }
 }
 
-/// Judges a record: each rule that is broken, once.
+/// Judges a record. Returns each broken rule once.
 #[must_use]
 pub fn broken_rules(record: &Record, robot: &Robot, scenario: &Scenario) -> Vec<BrokenRule> {
     let mut observer = Observer::new(limits(robot, scenario));
@@ -86,7 +87,7 @@ const fn cause(cause: ResetCause) -> Cause {
     }
 }
 
-/// Every event of a record, in order of time.
+/// Returns every event of a record, in order of time.
 #[must_use]
 pub fn events(record: &Record) -> Vec<(Time, Event<'_>)> {
     let time = |at: u64| at as Time;
@@ -153,7 +154,7 @@ pub fn events(record: &Record) -> Vec<(Time, Event<'_>)> {
     for write in &record.written {
         events.push((time(write.cycle), Event::Written));
     }
-    // Some rules count from a time at which nothing is observed.
+    // Some rules end at a time at which nothing else is observed.
     let often = (0..record.end).step_by(100 * MS as usize);
     events.extend(often.map(|at| (time(at), Event::Pass)));
     events.push((time(record.end), Event::Pass));
@@ -169,7 +170,7 @@ fn check_alive(record: &Record) -> Result<(), String> {
     }
 }
 
-/// Checks the last `stand` of the scenario, long after all trouble.
+/// Checks that the last `stand` of the scenario, long after all trouble, is carried out.
 fn check_stand(record: &Record) -> Result<(), String> {
     let mut exchanges = record.exchanges.iter().rev();
     let status = exchanges.next().ok_or("nothing was asked")?;
@@ -195,8 +196,8 @@ fn check_stand(record: &Record) -> Result<(), String> {
     Ok(())
 }
 
-/// Checks that `status` is the same before and after a refused command, unless `deadman` or the
-/// end of a count stopped the robot meanwhile.
+/// Checks that `status` is the same before and after a refused command, unless `deadman` or the end of a counted
+/// motion stopped the robot meanwhile.
 fn check_refusals(record: &Record) -> Result<(), String> {
     for three in record.exchanges.windows(3) {
         let [before, refused, after] = three else {
@@ -213,7 +214,7 @@ fn check_refusals(record: &Record) -> Result<(), String> {
             let is_end = line.text == "# done" || line.text.contains("as long as deadman says");
             is_end && span.contains(&line.cycle)
         });
-        // A routine goes on, from a motion to a rest and back.
+        // A routine continues by itself, for example from a motion to a rest.
         let is_routine =
             before.status("gait") == Some(PATROL) || after.status("gait") == Some(PATROL);
         let is_troubled = ends_by_itself || is_routine || record.is_troubled(from.cycle, to.cycle);
@@ -230,8 +231,7 @@ fn check_refusals(record: &Record) -> Result<(), String> {
     Ok(())
 }
 
-/// Checks the distance of each pulse from the one before, unless a reset or blocked interrupts
-/// came between.
+/// Checks the time between each pulse and the previous one, unless a reset or blocked interrupts came between them.
 fn check_pulse_times(record: &Record) -> Result<(), String> {
     const FRAME: u64 = 20 * MS;
     for servo in 0..4 {
@@ -242,7 +242,7 @@ fn check_pulse_times(record: &Record) -> Result<(), String> {
         let begins: Vec<u64> = pulses.map(|(at, _)| *at).collect();
         for pair in begins.windows(2) {
             let (from, to) = (pair[0], pair[1]);
-            // Another rule judges frames that are left out.
+            // Another rule judges missing frames.
             let is_next = to - from < FRAME + FRAME / 2;
             let is_held = record.holds.iter().any(|hold| hold.overlaps(from, to));
             let is_new = record
@@ -262,7 +262,7 @@ fn check_pulse_times(record: &Record) -> Result<(), String> {
 /// Checks that every line that the board carried out was really sent.
 fn check_orders_were_sent(record: &Record) -> Result<(), String> {
     for line in &record.lines {
-        // A banner follows what a reset has cut off.
+        // After a reset, a banner may follow the cut-off part of an answer.
         let Some(done) = line.text.strip_prefix("ok ").filter(|it| !it.contains('#')) else {
             continue;
         };
@@ -271,8 +271,8 @@ fn check_orders_were_sent(record: &Record) -> Result<(), String> {
         } else {
             done
         };
-        // A reset within a line lets the program see only its end, and where a link breaks within
-        // one, noise may end its beginning.
+        // If a reset comes within a line, the program sees only the end of the line. If the radio link breaks
+        // within a line, noise may end it early.
         let recent = line.cycle.saturating_sub(200 * MS)..line.cycle;
         let mut starts = record.starts.iter();
         let is_new = starts.any(|start| recent.contains(&start.cycle));
@@ -294,12 +294,12 @@ fn check_orders_were_sent(record: &Record) -> Result<(), String> {
     Ok(())
 }
 
-/// Checks that each `stop` of the person at the phone is answered, once the link holds for a while.
+/// Checks that each `stop` of the person at the phone is answered, once the radio link has held for a while.
 fn check_stop_is_answered(record: &Record) -> Result<(), String> {
     const HOLDS: u64 = 2_000 * MS;
-    // Until the robot has found the line's rate, for which it needs up to five lines.
+    // Longer before the robot has found the line's baud rate, for which it needs up to five lines.
     const FINDS: u64 = 3_500 * MS;
-    // Meanwhile the answer to an earlier `stop` may be on its way.
+    // During this time before a `stop`, the answer to an earlier one may come.
     const UNDER_WAY: u64 = 300 * MS;
     for stop in &record.stops {
         let ends = |line: &&Line| {
@@ -326,7 +326,7 @@ fn check_stop_is_answered(record: &Record) -> Result<(), String> {
     Ok(())
 }
 
-/// Checks the LED from the report of a fault, or from the last order, to the last `status`.
+/// Checks the LED between the last change (the report of a fault, an order or a start) and each `status`.
 fn check_led(record: &Record) -> Result<(), String> {
     let led = record.edges.iter().filter(|edge| edge.pin == LED);
     let led: Vec<(Time, bool)> = led.map(|edge| (edge.cycle as Time, edge.high)).collect();
@@ -334,7 +334,7 @@ fn check_led(record: &Record) -> Result<(), String> {
         let at = exchange.answer.as_ref()?.cycle;
         Some((at, led::code(exchange.status("fault")?)))
     };
-    // An order waits while older answers are printed, so the time of its own answer counts.
+    // An order waits while older answers are printed, so the time of its own answer is what counts.
     let tells = |text: &str| {
         let is_done = text.starts_with("ok ") && !text.starts_with("ok gait=");
         is_done || text.starts_with("# fault") || text.starts_with("# held")
@@ -346,7 +346,7 @@ fn check_led(record: &Record) -> Result<(), String> {
         .chain(record.starts.iter().map(|start| start.cycle))
         .collect();
     for (at, code) in record.exchanges.iter().filter_map(shown_code) {
-        // A flash that began earlier does not belong to this pattern.
+        // A flash that began before the last change does not belong to this pattern.
         let since = changes.iter().filter(|change| **change < at).max();
         let from = since.unwrap_or(&0) + 60 * MS;
         if !record.is_disturbed(from.saturating_sub(100 * MS), at) {

@@ -1,5 +1,5 @@
-//! A record of a scenario, seen from the outside: pulses, lines, the LED, resets, writes to
-//! the EEPROM; and the troubles that the board was given.
+//! Record of a scenario: the outputs that are visible from outside (pulses, lines, the LED, resets, writes to the
+//! EEPROM), and the troubles that were applied to the board.
 
 use lizard_core::console::word::Effect;
 use lizard_host::sim::lines::Line;
@@ -19,21 +19,21 @@ pub struct Span {
 }
 
 impl Span {
-    /// True if it has a cycle in common with `start..end`.
+    /// True if the span has a cycle in common with `start..end`.
     #[must_use]
     pub fn overlaps(&self, start: u64, end: u64) -> bool {
         self.start < end && start < self.end
     }
 }
 
-/// A line and its answer.
+/// A line sent to the board, and its answer.
 #[derive(Debug, Clone)]
 pub struct Exchange {
-    /// The cycle at which it was sent.
+    /// The cycle at which the line was sent.
     pub asked: u64,
     /// The line.
     pub line: String,
-    /// The line's effect on the servos, if it is carried out.
+    /// The effect on the servos if the line is carried out.
     pub effect: Effect,
     /// The answer: the first line after it that is not information, if there is one.
     pub answer: Option<Line>,
@@ -47,7 +47,7 @@ impl Exchange {
         answer.is_some_and(|line| line.text.starts_with("ok"))
     }
 
-    /// A value of `status`, if this was an answered `status`.
+    /// Returns a value of `status`, if this exchange was an answered `status`.
     #[must_use]
     pub fn status(&self, key: &str) -> Option<&str> {
         let text = self.answer.as_ref()?.text.strip_prefix("ok ")?;
@@ -60,42 +60,42 @@ impl Exchange {
 /// A line that arrived at the board.
 #[derive(Debug, Clone)]
 pub struct Received {
-    /// The cycle at which its end had arrived.
+    /// The cycle at which the end of the line had arrived.
     pub cycle: u64,
     /// The line.
     pub text: String,
-    /// The line's effect on the servos, if it is carried out.
+    /// The effect on the servos if the line is carried out.
     pub effect: Effect,
-    /// True if it is a command, and arrived undamaged.
+    /// True if the line is a command and arrived undamaged.
     pub is_command: bool,
 }
 
 impl Received {
-    /// True for a line that tells the robot to move, to stop or to rest.
+    /// True if the line tells the robot to move, to stop or to rest.
     fn is_order(&self) -> bool {
         let ordered = matches!(self.effect, Effect::Moves | Effect::Freezes | Effect::Rests);
         ordered && self.text != super::scenario::NOWHERE
     }
 }
 
-/// Everything that was observed, and done to the board.
+/// Everything that was observed in a scenario, and everything that was done to the board.
 #[derive(Debug, Default)]
 pub struct Record {
     /// Edges of all pins.
     pub edges: Vec<Edge>,
     /// The pulses of A1 to A4, each with the cycle at which it begins.
     pub pulses: Vec<(u64, Pulse)>,
-    /// The board's lines.
+    /// The lines that the board printed.
     pub lines: Vec<Line>,
-    /// The lines that were sent and waited for, in order.
+    /// The lines that were sent and whose answers were waited for, in order.
     pub exchanges: Vec<Exchange>,
-    /// The lines that arrived, waited for or not.
+    /// The lines that arrived at the board, with or without waiting for an answer.
     pub received: Vec<Received>,
-    /// The lines that anybody sent, each with its cycle.
+    /// The lines that were sent by cable or radio, each with its cycle.
     pub sent: Vec<(u64, String)>,
     /// The cycles at which the person at the phone stopped the robot.
     pub stops: Vec<u64>,
-    /// The spans in which the person's lines could reach the board.
+    /// The spans in which the lines of the person at the phone could reach the board.
     pub reached: Vec<Span>,
     /// The cycles at which bytes arrived.
     pub bytes: Vec<u64>,
@@ -103,25 +103,24 @@ pub struct Record {
     pub starts: Vec<Reset>,
     /// Every write of the EEPROM.
     pub written: Vec<EepromOperation>,
-    /// The supply in mV, each with the cycle from which it applied.
+    /// The supply voltages in mV, each with the cycle from which it applied.
     pub supply: Vec<(u64, f64)>,
-    /// The spans in which main was stalled.
+    /// The spans in which the main loop was stalled.
     pub stalls: Vec<Span>,
     /// The spans in which interrupts were blocked.
     pub holds: Vec<Span>,
-    /// The times at which RESET was pulled, or the supply fell below the brown-out level or was
-    /// cut.
+    /// The cycles at which RESET was pulled low, or the supply fell below the brown-out level or was cut.
     pub cuts: Vec<u64>,
-    /// The last cycle.
+    /// The cycle at which the scenario ended.
     pub end: u64,
     /// The board's state at the end.
     pub state: Option<State>,
 }
 
 impl Record {
-    /// Finds the servos' pulses among the edges.
+    /// Finds the servos' pulses among the edges and adds them to the record.
     pub(super) fn find_pulses(&mut self, pins: [Pin; 4]) {
-        // Within these a reset has released the pins.
+        // Within this time after a reset, the pins are released.
         const AT_ONCE: u64 = MS / 10;
         for (servo, pin) in pins.into_iter().enumerate() {
             for pulse in pulses(&self.edges, pin) {
@@ -140,15 +139,15 @@ impl Record {
         }
     }
 
-    /// True if main was stalled, or interrupts held up, in `start..end`.
+    /// True if the main loop was stalled or interrupts were blocked within `start..end`.
     #[must_use]
     pub fn is_disturbed(&self, start: u64, end: u64) -> bool {
         let mut all = self.stalls.iter().chain(&self.holds);
         all.any(|span| span.overlaps(start, end))
     }
 
-    /// The lines that tell the board to move or to rest, each with its outcome: `Some(true)`
-    /// done, `Some(false)` refused, `None` unknown.
+    /// Returns the lines that tell the robot to move, to stop or to rest, each with its outcome: `Some(true)` done,
+    /// `Some(false)` refused, `None` unknown.
     pub fn orders(&self) -> impl Iterator<Item = (&Received, Option<bool>)> {
         self.received
             .iter()
@@ -158,7 +157,7 @@ impl Record {
                     exchange.line == received.text && exchange.asked <= received.cycle
                 };
                 let exchange = self.exchanges.iter().rev().find(asked);
-                // Within the duration of a line.
+                // The line must have arrived within the time that sending it takes.
                 let exchange = exchange.filter(|one| received.cycle - one.asked < 10 * MS);
                 let answer = exchange.and_then(|exchange| exchange.answer.as_ref());
                 let done = answer.and_then(|answer| match answer.text.get(..3)? {
@@ -170,10 +169,10 @@ impl Record {
             })
     }
 
-    /// The outcome of a line that nobody waited for, by the board's next lines.
+    /// Derives the outcome of a line from the board's next lines, if nobody waited for its answer.
     fn is_confirmed(&self, received: &Received) -> Option<bool> {
         let (from, to) = (received.cycle, received.cycle + 300 * MS);
-        // A reset may have cut off the beginning.
+        // A reset may have cut off the beginning of the line.
         let is_ok = |text: &str| {
             let echo = text.strip_prefix("ok ");
             echo.is_some_and(|echo| received.text.ends_with(echo))
@@ -185,7 +184,7 @@ impl Record {
         if soon.clone().any(|line| is_ok(&line.text)) {
             return Some(true);
         }
-        // In this state any order is refused.
+        // After these errors, the board refuses every order.
         let refuses = |text: &str| text.starts_with("err 7 ") || text.starts_with("err 8 ");
         let is_refused =
             !self.is_troubled(from, to) && soon.clone().any(|line| refuses(&line.text));
@@ -202,8 +201,8 @@ impl Record {
         self.exchanges.iter().any(is_matching)
     }
 
-    /// True if the board has answered since the person took the radio, and since a reset that
-    /// had it forget the line's rate.
+    /// True if the board has answered since the person began to drive by radio, and since the last reset that made
+    /// it forget the line's baud rate.
     #[must_use]
     pub fn has_found_rate(&self, at: u64) -> bool {
         let radio = self.reached.first().map_or(at, |link| link.start);
@@ -217,7 +216,7 @@ impl Record {
         lines.any(|line| line.is_answer() && (since..at).contains(&line.cycle))
     }
 
-    /// True if a reset or a disturbance came in `from..to`.
+    /// True if a reset, a power cut or a disturbance came within `from..to`.
     #[must_use]
     pub fn is_troubled(&self, from: u64, to: u64) -> bool {
         let span = from..to;

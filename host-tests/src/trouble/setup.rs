@@ -1,5 +1,5 @@
-//! Settings before trouble begins, saved or not: of the servos, a boot gait, a
-//! deadman, a travel.
+//! Settings that a scenario makes before trouble begins, saved or not: servo numbers, a boot gait, a deadman, a
+//! travel.
 
 use fastrand::Rng;
 use lizard_host::patrol::PATROL;
@@ -10,7 +10,7 @@ use super::step::Step;
 
 const MS: u64 = CYCLES_PER_MS;
 
-/// The command for a random pose around the neutral one.
+/// Returns the command for a random pose around the neutral one.
 pub fn pose(rng: &mut Rng, robot: &Robot) -> String {
     let servos = robot.servos();
     let angles: Vec<String> = (0..4)
@@ -22,7 +22,7 @@ pub fn pose(rng: &mut Rng, robot: &Robot) -> String {
     format!("pose {}", angles.join(" "))
 }
 
-/// The command for a random trim.
+/// Returns the command for a random trim.
 pub fn trim(rng: &mut Rng) -> String {
     let servo = rng.u8(1..=4);
     let degrees = f64::from(rng.i32(-1_500..1_500)) / 100.0;
@@ -33,17 +33,17 @@ fn say(line: impl Into<String>) -> Step {
     Step::Say(line.into())
 }
 
-/// A servo's travel, this many degrees to either side of neutral.
+/// Returns the command that limits a servo's travel to this many degrees on either side of neutral.
 fn travel(servo: usize, degrees: f64, robot: &Robot) -> String {
     let neutral = robot.servos()[servo].neutral;
     let [low, high] = [-degrees, degrees].map(|sweep| (neutral + sweep).rem_euclid(360.0));
     format!("limit {} {low:.2} {high:.2}", servo + 1)
 }
 
-/// A scale far from that of robot.toml, us per degree.
+/// A servo scale far from that of robot.toml, us per degree.
 pub const WIDE_SCALE: &str = "17.77";
 
-/// A line that makes main settle the servos again.
+/// Returns a command after which the main loop has to apply the servos' settings again.
 pub fn adjustment(rng: &mut Rng) -> String {
     match rng.u8(0..5) {
         0 => "load".into(),
@@ -58,7 +58,7 @@ pub fn adjustment(rng: &mut Rng) -> String {
     }
 }
 
-/// Settings of a random kind; half of the time none.
+/// Returns the steps that make settings of a random kind; in about half of the cases none.
 pub fn settings(rng: &mut Rng, robot: &Robot) -> Vec<Step> {
     let wait = |ms: u64| Step::Wait(ms * MS);
     match rng.u8(0..16) {
@@ -73,10 +73,10 @@ pub fn settings(rng: &mut Rng, robot: &Robot) -> Vec<Step> {
         }
         5 => vec![say("boot rest"), say("save")],
         6 => vec![say(format!("deadman {}", rng.u16(100..2_000)))],
-        // A narrower travel is saved than the one in use.
+        // The saved travel is narrower than the one in use.
         7 => {
             let servo = rng.usize(0..4);
-            // The gaits need 23 degrees; beyond 23.9 a leg's margin ends.
+            // The gaits need 23 degrees; beyond 23.9 a leg's margin is too small.
             let degrees = 23.2;
             let narrow = travel(servo, degrees, robot);
             let neutral = robot.servos().map(|servo| servo.neutral);

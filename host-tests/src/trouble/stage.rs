@@ -1,4 +1,4 @@
-//! Plays a scenario on a simulated UNO and records everything observable.
+//! Player of scenarios: plays one on a simulated UNO and records everything observable.
 
 use fastrand::Rng;
 use lizard_core::console::command::{effect, parse};
@@ -18,23 +18,23 @@ use super::step::Step;
 /// The longest wait for an answer, ms.
 const TIMEOUT_MS: u64 = 400;
 
-/// The largest number of questions until a robot is found: 5 at the slowest rate, and some more.
+/// Number of `status` questions after which the search for the robot ends: 5 at the slowest rate, and some more.
 const MAX_QUESTIONS: u32 = 12;
 
 /// The voltages of a good supply and of a weak one under load, mV.
 const GOOD_MV: f64 = 5_000.0;
 const FALLEN_MV: f64 = 2_400.0;
 
-/// The voltage below which the chip is held in reset, mV, with its largest hysteresis.
+/// The voltage below which the chip is held in reset, mV, including the largest hysteresis.
 const BROWN_OUT_MV: f64 = 2_725.0;
 
-/// Cycles of a byte on the line.
+/// Cycles of a byte on the serial line.
 const BYTE: u64 = 1_389;
 
-/// Cycles since the last pulse within which a servo counts as having pulses.
+/// Cycles for which a servo counts as having pulses after the start of its last one.
 const RECENT: u64 = 25 * CYCLES_PER_MS;
 
-/// A board and its record.
+/// A board in a scenario, and its record.
 struct Stage<'a> {
     robot: &'a Robot,
     uno: Uno,
@@ -99,7 +99,7 @@ impl Stage<'_> {
             }
             Step::Hold(cycles) => {
                 self.uno.hold(*cycles);
-                // It waits until interrupts are on.
+                // The interrupt waits until interrupts are enabled.
                 let end = now + cycles + CYCLES_PER_MS;
                 self.record.holds.push(Span { start: now, end });
             }
@@ -142,7 +142,7 @@ impl Stage<'_> {
         self.record.sent.push((now, line.to_owned()));
     }
 
-    /// Asks for the status until there is an answer.
+    /// Sends `status` until there is an answer.
     fn find(&mut self) {
         for _ in 0..MAX_QUESTIONS {
             let from = self.record.lines.len();
@@ -155,7 +155,7 @@ impl Stage<'_> {
         }
     }
 
-    /// Adds random bytes to the line, half of the time without pauses.
+    /// Adds random bytes to the serial line, half of the time without pauses.
     fn add_noise(&mut self, cycles: u64) {
         let largest = cycles / BYTE;
         let count = if self.noise.bool() {
@@ -169,7 +169,7 @@ impl Stage<'_> {
                 1 => self.noise.u8(b' '..0x7f),
                 _ => self.noise.u8(..),
             };
-            // Alone in a line it asks for help.
+            // A `?` alone in a line would print the help.
             let byte = if byte == b'?' { b'!' } else { byte };
             match self.noise.u8(..8) {
                 0 => self.uno.send_with_framing_error(&[byte]),
@@ -221,8 +221,8 @@ impl Stage<'_> {
         }
     }
 
-    /// A stall ends with a reset, and a weak supply answers to the pulses: so time
-    /// passes in small pieces while there is one of them.
+    /// Runs until a cycle. A stall ends with a reset, and a weak supply reacts to the pulses, so the time passes in
+    /// small pieces while there is a stall, a weak supply or a drive.
     fn run_to(&mut self, until: u64) {
         while self.uno.cycle() < until && self.is_alive() {
             let now = self.uno.cycle();
@@ -241,7 +241,7 @@ impl Stage<'_> {
         }
     }
 
-    /// Records what the board has done since the last call.
+    /// Records the board's outputs since the last call.
     fn record_events(&mut self) {
         let bytes = self.uno.take_transmitted();
         self.record.lines.extend(self.reader.read(&bytes));
@@ -307,7 +307,7 @@ impl Stage<'_> {
     }
 }
 
-/// A line by its bytes, and the cycle at which its end arrived.
+/// Returns the received line for its bytes and the cycle at which its end arrived.
 fn received(bytes: &[u8], cycle: u64, robot: &Robot) -> Received {
     let is_whole = bytes.len() <= MAX_BYTES && bytes.is_ascii();
     let text = String::from_utf8_lossy(bytes.trim_ascii()).to_ascii_lowercase();
@@ -320,8 +320,8 @@ fn received(bytes: &[u8], cycle: u64, robot: &Robot) -> Received {
     }
 }
 
-/// The effect of a line, or of its longest tail that has one: a reset may have cut off the
-/// beginning.
+/// Returns the effect of a line or, if it is no command, of its longest tail that has one: a reset may have cut off
+/// its beginning.
 fn effect_of_an_end(line: &str, robot: &Robot) -> Effect {
     let robot = robot.firmware();
     if parse(line.as_bytes(), robot).is_ok() {

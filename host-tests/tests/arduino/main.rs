@@ -1,5 +1,5 @@
-//! The Arduino library of `arduino/`, compiled by `make arduino-test` as the Arduino IDE does, in the
-//! simulated UNO: its edges are those of the Rust engine.
+//! Tests of the Arduino library of `arduino/`. `make arduino-test` compiles it as the Arduino IDE does, and it runs
+//! in the simulated UNO: its edges equal those of the Rust engine.
 
 use lizard_host_tests::{FirmwareBench, root};
 use servo_pulses::{CYCLES_PER_US, frame_cycles};
@@ -15,12 +15,12 @@ fn elf(path: &str) -> Uno {
         .unwrap_or_else(|error| panic!("`make arduino-test` builds it: {error}"))
 }
 
-/// The library's example or the tests' sketch of this name.
+/// Loads the library's example or the tests' sketch of this name.
 fn sketch(name: &str) -> Uno {
     elf(&format!("target/arduino/{name}/{name}.ino.elf"))
 }
 
-/// Every edge of the servos, with its cycles since the first one.
+/// Returns every edge of the servos' pins, with its cycles since the first one.
 fn edges_since_the_first(uno: &Uno) -> Vec<(u64, Pin, bool)> {
     let is_servo = |edge: &&Edge| edge.pin != Pin::d(13);
     let edges: Vec<Edge> = uno.edges().iter().filter(is_servo).copied().collect();
@@ -29,8 +29,7 @@ fn edges_since_the_first(uno: &Uno) -> Vec<(u64, Pin, bool)> {
     edges.iter().map(since).collect()
 }
 
-/// The widths of each pin's pulses in 10 s, cycles, while bytes arrive and are echoed without a
-/// pause.
+/// Returns the widths of each pin's pulses in 10 s, cycles, while bytes arrive and are echoed without a pause.
 fn widths_in_a_flood(uno: &mut Uno, pins: &[u8]) -> Vec<Vec<u64>> {
     uno.run_ms(100);
     uno.take_edges();
@@ -49,7 +48,7 @@ fn widths_in_a_flood(uno: &mut Uno, pins: &[u8]) -> Vec<Vec<u64>> {
     pins.iter().map(widths).collect()
 }
 
-/// Cycles between the longest and the shortest.
+/// Returns the difference between the longest and the shortest width, cycles.
 fn jitter(widths: &[u64]) -> u64 {
     let [min, max] = [widths.iter().min(), widths.iter().max()];
     max.expect("a pulse") - min.expect("a pulse")
@@ -78,7 +77,7 @@ fn eight_servos_have_the_edges_of_the_rust_engine_to_the_cycle() {
 #[test]
 fn a_flood_of_serial_bytes_changes_no_width_by_a_cycle() {
     let mut uno = sketch("BesideSerial");
-    // 90 degrees of 544 to 2400 us.
+    // 90 degrees in a range from 544 to 2400 us.
     let width = (544 + (2400 - 544) / 2) * u64::from(CYCLES_PER_US);
     for widths in widths_in_a_flood(&mut uno, &PINS) {
         assert!(widths.len() > 440, "{} pulses", widths.len());
@@ -104,7 +103,7 @@ fn a_flood_of_serial_bytes_changes_no_width_by_a_cycle() {
     }
 }
 
-/// Cycles per second in the handlers of Timer1's compare matches.
+/// Returns the cycles per second in the handlers of Timer1's compare matches.
 fn cycles_in_handlers(uno: &Uno) -> u64 {
     let handlers = uno.interrupts().into_iter();
     let cycles = handlers
@@ -136,14 +135,14 @@ fn a_late_pulse_is_left_out_and_none_is_ever_too_short() {
     let mut uno = sketch("Late");
     uno.run_ms(10_000);
     let pulses = uno.pulses(Pin::d(9));
-    // Interrupts are on for a half of the time.
+    // Interrupts are enabled for half of the time.
     assert!(
         (100..400).contains(&pulses.len()),
         "{} pulses",
         pulses.len()
     );
     for pulse in pulses {
-        // A falling edge waits until interrupts are on again, 30 us at most.
+        // A falling edge waits until interrupts are enabled again, 30 us at most.
         assert!((24_000..24_500).contains(&pulse.width), "{}", pulse.width);
     }
     assert!(
@@ -175,7 +174,7 @@ fn angles_and_widths_are_those_of_the_servo_library() {
     assert!(uno.run_until_line(100 * CYCLES_PER_MS));
     let numbers = uno.take_transmitted();
     let numbers: Vec<u8> = numbers.iter().map(|byte| byte.byte).collect();
-    // The number and 1 of each servo that is attached; 255 for a ninth one, and for a pin 20.
+    // For each attached servo its index plus `attached`, which is 1; 255 for a ninth servo, and for pin 20.
     assert_eq!(String::from_utf8_lossy(&numbers), "12345678255255\r\n");
     for (value, angle, us) in [
         (0, 0, 1000),
@@ -207,7 +206,7 @@ fn angles_and_widths_are_those_of_the_servo_library() {
             widths.iter().all(|width| *width == us * 16),
             "{value}: {widths:?}"
         );
-        // The others are detached.
+        // All other pins have no servo attached any more.
         assert!(uno.edges().iter().all(|edge| edge.pin == Pin::d(2)));
     }
 }

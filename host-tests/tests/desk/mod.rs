@@ -1,6 +1,5 @@
-//! A new board at a serial port of this machine, for programs that write boards: a
-//! simulated UNO, with the boot loader of a stock UNO or of an old Nano in flash, at a pseudo
-//! terminal and in real time.
+//! A new board at a serial port of this machine, for programs that write boards. It is a simulated UNO at a pseudo
+//! terminal, in real time, with the boot loader of a stock UNO or of an old Nano in its flash.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -11,14 +10,14 @@ use simulated_uno::{Edge, Fidelity, Image, Port, Uno};
 
 use crate::shell::Shell;
 
-/// First byte of the boot loader; the firmware ends before it.
+/// Address of the boot loader's first byte; the firmware ends before it.
 pub const BOOT: usize = 0x7e00;
 
 pub fn boot_loader() -> Image {
     loader("optiboot.elf")
 }
 
-/// A file that `make flash-test` has made.
+/// Loads a boot loader that `make flash-test` has built.
 pub fn loader(name: &str) -> Image {
     let path: PathBuf = root().join("target/flash-test").join(name);
     Image::read(path).expect("`make flash-test` makes the boot loaders")
@@ -49,7 +48,7 @@ impl Desk {
         self.port.path().display().to_string()
     }
 
-    /// Runs the board until the condition holds; false if it never does.
+    /// Runs the board until the condition holds. Returns false if it does not hold in time.
     pub fn until(&mut self, mut done: impl FnMut(&mut Uno) -> bool) -> bool {
         LIMIT.wait_for(|| {
             let step = Duration::from_millis(10);
@@ -61,7 +60,7 @@ impl Desk {
         })
     }
 
-    /// Waits until `text` is on the screen; the test fails if it never is.
+    /// Waits until `text` is on the screen. Fails if it does not appear in time.
     pub fn see(&mut self, shell: &Shell, text: &str) {
         let seen = self.until(|_| shell.screen().contains(text) || shell.has_ended());
         let screen = if shell.has_ended() {
@@ -75,7 +74,7 @@ impl Desk {
         );
     }
 
-    /// Runs the board until the program has ended. Returns the screen.
+    /// Runs the board until the program in the shell has ended. Returns the screen.
     pub fn end(&mut self, shell: &Shell) -> String {
         let ended = self.until(|_| shell.has_ended());
         let screen = if ended {
@@ -87,13 +86,13 @@ impl Desk {
         screen
     }
 
-    /// Addresses below the boot loader where the flash is not that of a program.
+    /// Returns the addresses below the boot loader at which the flash differs from a program.
     pub fn differences(&self, program: &[u8]) -> Vec<usize> {
         let flash = self.uno.flash();
         (0..BOOT).filter(|&at| flash[at] != program[at]).collect()
     }
 
-    /// Checks that the flash holds a program, and the boot loader as it was.
+    /// Checks that the flash holds a program and an unchanged boot loader.
     pub fn assert_written(&self, program: &[u8]) {
         let wrong = self.differences(program);
         assert!(wrong.is_empty(), "the flash differs at {wrong:x?}");

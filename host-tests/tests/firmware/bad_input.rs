@@ -1,5 +1,5 @@
-//! Random bytes, and lines that are nearly right, into the running image as fast as the
-//! line carries them: for 15 seconds each, or as many times that as `LIZARD_FUZZ` says.
+//! Robustness test of the running image: random bytes, and lines that are nearly valid, as fast as the serial line
+//! carries them, for 15 seconds each, multiplied by `LIZARD_FUZZ`.
 
 use fastrand::Rng;
 use lizard_core::memory::copies::{self, Outcome};
@@ -12,13 +12,13 @@ use crate::kept::pulses;
 use crate::rate::ask_until_answered;
 use crate::{awake, end_flood, lines};
 
-/// Bytes that the line carries in a second.
+/// Bytes that the serial line carries in a second.
 const PER_SECOND: usize = 11_520;
 
-/// The duration of each flood, seconds.
+/// The duration of each flood, s.
 const SECONDS: u64 = 15;
 
-/// Sends bytes for that duration, and checks the pulses every second.
+/// Sends bytes for the duration of a flood, and checks the pulses every second.
 fn send_and_check(mut bytes: impl FnMut(&mut Rng) -> Vec<u8>) -> FirmwareBench {
     let mut bench = awake(Fidelity::DataSheet);
     let mut rng = lizard_host_tests::rng(77);
@@ -43,7 +43,7 @@ fn send_and_check(mut bytes: impl FnMut(&mut Rng) -> Vec<u8>) -> FirmwareBench {
         bench.uno.take_edges();
     }
     assert_eq!(bench.uno.reset_events().len(), 1, "no reset");
-    // Wait for the bytes that are still queued, here and in the robot.
+    // Wait for the bytes that are still queued, in the sender and in the robot.
     while bench.uno.unsent() > 0 {
         bench.run_ms(1000);
     }
@@ -53,7 +53,7 @@ fn send_and_check(mut bytes: impl FnMut(&mut Rng) -> Vec<u8>) -> FirmwareBench {
 
 /// Checks that the console answers and the memory is valid.
 fn assert_unharmed(mut bench: FirmwareBench) {
-    // Bytes that are not ASCII may have led it to another rate.
+    // Bytes that are not ASCII may have made the robot change its baud rate.
     ask_until_answered(&mut bench);
     assert_eq!(bench.say("watch 0"), "ok watch 0");
     bench.run_ms(300);

@@ -1,11 +1,10 @@
-//! The bench itself, on a small program that answers lines and drives four
-//! servos as the firmware does.
+//! Tests of the bench itself, on a small program that answers lines and drives four servos as the firmware does.
 
 use lizard_host_tests::{FRAME, FirmwareBench, avr_gcc::c, bench_of};
 use simulated_uno::{Fidelity, Uno};
 
-/// Slots of 4 ms by a busy loop; A1..A4 get 1000, 1200, 1400, 1600 us, one
-/// microsecond longer each frame. `r` rests, `q` asks. No interrupts.
+/// Program with slots of 4 ms in a busy loop. A1 to A4 get 1000, 1200, 1400, 1600 us, and one microsecond more in
+/// each frame. `r` stops the pulses, `?` prints an answer with information before it. No interrupts.
 const SERVOS: &str = r##"
     #include <avr/io.h>
     static void write(const char *text) {
@@ -73,7 +72,7 @@ fn frames_hold_one_pulse_of_each_servo() {
     let first = frames[0].widths();
     for (n, frame) in frames.iter().enumerate() {
         for (servo, width) in frame.widths().into_iter().enumerate() {
-            // One microsecond a frame, 200 a servo; the loops see it within 40.
+            // One microsecond per frame, 200 us per servo; the loops react within 40 cycles.
             let expected = first[0] + 16 * n as u64 + 3200 * servo as u64;
             assert!(
                 width.abs_diff(expected) <= 40,
@@ -96,7 +95,7 @@ fn a_function_of_the_program_is_timed_by_its_name() {
     ));
     let calls = bench.time_calls("work", 10);
     assert!(calls.len() > 100);
-    // The delay and `ret`.
+    // The delay and the `ret`.
     assert!(
         calls.iter().all(|call| call.cycles() == 1004),
         "{:?}",

@@ -1,4 +1,4 @@
-//! Settings of the servos, measured at the pins, and those that outlast power.
+//! Servo settings, measured at the pins, and the settings that survive a loss of power.
 
 use lizard_host::sim::frame::FRAME;
 use lizard_host_tests::robot;
@@ -11,19 +11,19 @@ use crate::kept::{
 use crate::walk::{SLOT, Walk};
 use crate::{Status, awake, first_moving_gait, in_both, neutral_widths, pose_at};
 
-/// A1's width at a sweep in degrees with a trim and a gain (us per degree), cycles.
+/// Returns A1's pulse width at a sweep (deg) with a trim (deg) and a gain (us per degree), cycles.
 fn width(trim: f64, gain: f64, sweep: f64) -> u64 {
     let servo = &robot().servos()[0];
     ((servo.neutral_us + gain * (trim + sweep)) * 16.0).round() as u64
 }
 
-/// A1's gain, us per degree.
+/// Returns A1's gain, us per degree.
 fn gain() -> f64 {
     robot().servos()[0].us_per_degree
 }
 
 fn assert_near(width: u64, expected: u64, what: &str) {
-    // An angle has steps of 0.0055 deg, and is typed with two decimals.
+    // An angle has steps of 0.0055 deg and is typed with two decimals.
     assert!(width.abs_diff(expected) <= 4, "{what}: {width}, {expected}");
 }
 
@@ -54,7 +54,7 @@ fn a_trim_turns_its_servo_alone_and_no_faster_than_the_slew_limit() {
         for (pulses, neutral) in pulses.iter().zip(neutral_widths()).skip(1) {
             assert!(pulses.iter().all(|pulse| pulse.width == neutral));
         }
-        // What the guard and `status` see is the true angle.
+        // The guard and `status` use the true angle.
         assert!((Status::of(&mut bench).pose()[0] - robot().servos()[0].neutral).abs() < 0.01);
     });
 }
@@ -121,7 +121,7 @@ fn saved_settings_shape_the_pulses_after_the_next_power_on() {
         assert_near(widths[0], width(1.5, gain(), 0.0), "trimmed");
         power_cycle(&mut bench);
         bench.run_ms(700);
-        // From the first pulse on.
+        // The widths are the saved ones from the first pulse on.
         for (pulses, width) in pulses(&bench).iter().zip(widths) {
             assert!(pulses.len() > 10 && pulses.iter().all(|pulse| pulse.width == width));
         }
@@ -202,7 +202,7 @@ fn every_pulse_of_a_walk_is_exact_while_the_memory_is_written() {
         let start = walk.next_frame();
         let written = walk.bench.uno.eeprom_operations().len();
         walk.bench.send("save");
-        // The serial line stays busy: main takes none of it until it has saved.
+        // The serial line stays busy: the main loop reads none of it until it has saved.
         for _ in 0..14 {
             walk.bench.uno.send(b" \t ");
             walk.run_to(walk.bench.uno.cycle() + FRAME);
@@ -249,7 +249,7 @@ fn boot_begins_its_gait_three_seconds_after_power_on_unless_a_byte_comes() {
     });
 }
 
-/// A pose near the neutral one, and the widths that it has.
+/// Moves the robot to a pose near the neutral one and returns its pulse widths.
 fn order_nearby_pose(bench: &mut lizard_host_tests::FirmwareBench) -> [u64; 4] {
     bench.say(&pose_at([6.0, -6.0, 6.0, -6.0]));
     bench.run_ms(1000);
@@ -277,7 +277,7 @@ fn power_on_wakes_the_servos_one_by_one_where_the_robot_rested() {
         }
         assert_no_leap(&pulses);
         assert_eq!(widths_now(&mut bench), neutral_widths(), "then it stands");
-        // It has moved since: where it rested is no longer known.
+        // The robot has moved since, so its resting pose is no longer valid.
         power_cycle(&mut bench);
         bench.run_ms(300);
         let first = bench.uno.pulses(bench.pins()[0])[0].width;

@@ -1,4 +1,4 @@
-//! One line in, one answer out, and what the answer means for the pulses.
+//! The console: each line has one answer, and the pulses agree with it.
 
 use fastrand::Rng;
 use lizard_host::sim::analysis::instants;
@@ -10,8 +10,8 @@ use crate::{
     SECOND, Status, angles, awake, first_moving_gait, gaits, in_both, pose_at, robot_after, widths,
 };
 
-/// Largest rounding of a printed angle, deg: half a step of two decimals, of a pulse and of the
-/// neutral angle.
+/// Largest rounding error of a printed angle, deg: half a step of two decimals, of a pulse and of the neutral
+/// angle.
 const PRINTED: f64 = 0.005 + 0.0032 + 0.0028;
 
 #[test]
@@ -54,7 +54,7 @@ fn cr_and_lf_and_crlf_each_end_one_line() {
 fn case_and_blanks_do_not_matter() {
     let mut bench = awake(Fidelity::DataSheet);
     assert_eq!(bench.say("  StaNd\t "), "ok stand");
-    // The gait with the most words in its name.
+    // Tries the gait with the most words in its name.
     let mut gaits = gaits();
     gaits.sort_by_key(|gait| gait.split(' ').count());
     let gait = gaits.pop().expect("stand at least");
@@ -78,14 +78,14 @@ fn a_line_may_have_63_characters_and_no_more() {
     assert_eq!(bench.say("stop"), "ok stop", "the next line is a new one");
 }
 
-/// Poses beyond a servo's travel, a margin and a slider's stroke, each with its code. A
-/// robot may have no pose that breaks a stroke and nothing before it.
+/// Returns poses that break a servo's travel, a margin and a slider's stroke, each with its error code. Some robots
+/// have no pose that breaks a stroke but nothing that is checked earlier.
 fn refused_poses() -> Vec<(String, u8)> {
     let mut rng = Rng::with_seed(1);
     let mut found: [Option<String>; 3] = [None, None, None];
     let servos = robot().servos();
     for n in 0..400_000 {
-        // Poses everywhere, and others near neutral, where fewer limits are broken at once.
+        // Half of the poses are closer to neutral, where fewer limits are broken at once.
         let largest = [175.0, 90.0, 45.0, 25.0][n % 4];
         let sweeps: [f64; 4] = std::array::from_fn(|_| largest * (2.0 * rng.f64() - 1.0));
         let within = |by: f64| {
@@ -125,9 +125,9 @@ fn refused_poses() -> Vec<(String, u8)> {
         .collect()
 }
 
-/// The code with which a pose within the travel is refused, if it is certain. The
-/// guard checks the margins of both ends first, where crossed crank tips are a type-2
-/// margin below 0, and at the strokes after all of them.
+/// Returns the error code of a pose within the travel; `None` if the pose is allowed or the code is not certain.
+/// The guard first checks the margins of both ends, where crossed crank tips are a type-2 margin below 0. It checks
+/// the strokes last.
 fn code(solution: &Solution) -> Option<u8> {
     let broken = |by: f64, stroke: bool| {
         let mut all = limits(by).violations(solution);
@@ -144,8 +144,8 @@ fn code(solution: &Solution) -> Option<u8> {
     }
 }
 
-/// The robot's limits, stricter by `by`: sines, and ten times that in mm for a robot of
-/// the paper's size.
+/// Returns the robot's limits, made stricter by `by`: sines by `by`, and strokes by ten times that in mm for a
+/// robot of the paper's size.
 fn limits(by: f64) -> Limits {
     let limits = robot().limits();
     let size = robot().lizard().links.l10 / 135.0;
@@ -196,7 +196,7 @@ fn every_refusal_has_its_code_and_changes_nothing() {
                 "{line}: {answer}"
             );
         }
-        // Both have walked for the same time when they are compared.
+        // Both boards must have walked for the same time before they are compared.
         for board in [&mut bench, &mut quiet] {
             let left = 4 * FREQUENCY - board.uno.cycle();
             board.uno.run_cycles(left);
@@ -287,7 +287,7 @@ fn status_agrees_with_the_pulses() {
 #[test]
 fn status_counts_fifty_frames_a_second_and_follows_the_phase() {
     let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
-    bench.run_ms(3000); // the move to its first pose
+    bench.run_ms(3000); // the move to the gait's first pose
     let moving = first_moving_gait();
     let gait = robot().gait(&moving).expect("a gait");
     let mut last: Option<(u64, Status)> = None;
@@ -325,7 +325,7 @@ fn watch_reports_the_pose_of_every_nth_frame_until_it_is_switched_off() {
         let received = bench.lines().len();
         let frames = bench.run_for_frames(75);
         let sent = instants(robot(), &frames);
-        // A report after the beginning of the last frame may be about the next one.
+        // A report after the beginning of the last frame may belong to the next one.
         let end = frames[74].start;
         let lines: Vec<String> = bench.lines()[received..]
             .iter()
@@ -358,11 +358,10 @@ fn watch_reports_the_pose_of_every_nth_frame_until_it_is_switched_off() {
 fn half_speed_takes_twice_the_time() {
     in_both(|fidelity| {
         let mut bench = robot_after(&first_moving_gait(), fidelity);
-        bench.run_ms(3000); // the move to its first pose
+        bench.run_ms(3000); // the move to the gait's first pose
         let moving = first_moving_gait();
         let gait = robot().gait(&moving).expect("a gait");
-        // The pace is a whole number of 1/1024, so a pace of 10 % has an error of up to
-        // half a percent.
+        // The pace is a whole number of 1/1024, so a pace of 10 % has an error of up to half a percent.
         let frames = (gait.period() * SECOND as f64).ceil() as u64;
         let fastest = robot().pace().gait_slew / SECOND as f64;
         let mut spans: Vec<u64> = Vec::new();
@@ -374,8 +373,7 @@ fn half_speed_takes_twice_the_time() {
             let sent = widths(&bench.run_for_frames(2 * cycle));
             let (once, again) = sent.split_at(cycle as usize);
             for (i, servo) in robot().servos().iter().enumerate() {
-                // Half a percent of a cycle, and the part of a frame at the cycle's
-                // end.
+                // Half a percent of a cycle, and the part of a frame by which the cycle does not end on one.
                 let frame = 16.0 * servo.us_per_degree.abs() * fastest;
                 let max = 0.005 * gait.period() * SECOND as f64 * frame + frame + 2.0;
                 for (here, later) in once.iter().zip(again) {
@@ -383,7 +381,7 @@ fn half_speed_takes_twice_the_time() {
                     assert!(error <= max, "{percent} %: {error} cycles after a cycle");
                 }
             }
-            // In a cycle each leg makes its whole sweep, at any speed.
+            // In a cycle, each leg makes its whole sweep at any speed.
             let column = || once.iter().map(|widths| widths[0]);
             spans.push(column().max().unwrap_or(0) - column().min().unwrap_or(0));
         }

@@ -1,5 +1,5 @@
-//! AVR against host: random commands for ten minutes, bit for bit. `LIZARD_MINUTES=2` is for
-//! a short look at one robot of many.
+//! Comparison of the core on the AVR and on the host, bit for bit, with random commands for ten minutes.
+//! `LIZARD_MINUTES=2` shortens it to try many robots.
 
 use fastrand::Rng;
 use lizard_host::sim::core_run;
@@ -9,15 +9,15 @@ use simulated_uno::{CYCLES_PER_MS, FREQUENCY, Fidelity};
 
 use crate::{Status, awake, comparable_line, for_each};
 
-/// Cycles of a sender's byte, rounded up.
+/// Cycles of a byte that the sender sends, rounded up.
 const BYTE: u64 = 1400;
 
-/// The last cycle that is compared.
+/// Returns the last cycle that is compared.
 fn end() -> u64 {
     60 * minutes() * FREQUENCY
 }
 
-/// A random line: any command, valid or not.
+/// Returns a random line: any command, valid or not.
 fn line(rng: &mut Rng) -> String {
     let near = |rng: &mut Rng, within: f64| {
         let angles: Vec<String> = robot()
@@ -53,13 +53,12 @@ fn line(rng: &mut Rng) -> String {
     }
 }
 
-/// Sends lines until a second before the end. Each line ends at a random time of a frame, at least
-/// a millisecond from the ticks, so that its frame is certain; and each waits for the answer to the
-/// previous one.
+/// Sends lines until a second before the end. Each line ends at a random time within a frame, at least a
+/// millisecond from the ticks, so that its frame is certain. Each line waits for the answer to the previous one.
 fn talk(bench: &mut FirmwareBench, first: u64, rng: &mut Rng) -> u32 {
     let mut count = 0;
     let mut written = 0;
-    // The tick of a frame comes a slot before A1's pulse.
+    // A frame's tick comes one slot before A1's pulse.
     let tick = first - FRAME / 5;
     while bench.uno.cycle() < end() - FREQUENCY {
         let line = line(rng);
@@ -73,7 +72,7 @@ fn talk(bench: &mut FirmwareBench, first: u64, rng: &mut Rng) -> u32 {
             .run_until_cycle(tick + frame * FRAME + within - sending);
         bench.say(&line);
         count += 1;
-        // Main reads no input while it stores the pose of a rest, or erases it.
+        // The main loop reads no input while it stores or erases the pose of a rest.
         written = if line == "rest" { 250 } else { 10 } * CYCLES_PER_MS;
     }
     bench.run_ms(250);
@@ -128,15 +127,15 @@ fn random_commands_give_the_same_widths_on_the_avr_and_here() {
         let enough = [2_900, 100, 500].map(|each| each * minutes());
         assert!(count > enough[0] && sent_lines > enough[1] && poses > enough[2]);
 
-        // The answers are the same, too, except for the counters of faults, which are 0 here.
-        // Which frame a report is told in also depends on the room in the line.
+        // The answers are also the same, except for the counters of faults, which are 0 here. Reports are not
+        // compared, since the frame in which one is printed also depends on the room in the serial buffer.
         let is_answer = |line: &&str| !line.starts_with('#');
         let printed = |line: &'_ str| comparable_line(line, fidelity);
         let asked = commands.written.lines().filter(is_answer).map(printed);
         let asked: Vec<String> = asked.collect();
         let lines = bench.lines().iter().map(|line| line.text.as_str());
         let answered: Vec<String> = lines.filter(is_answer).map(printed).collect();
-        // The UNO runs on beyond the last whole frame, and may have answered once more.
+        // The UNO runs beyond the last complete frame, and may have answered once more.
         let more = answered.len().saturating_sub(asked.len());
         assert!(more <= 1, "{more} more");
         assert_eq!(answered[..answered.len() - more], asked);

@@ -1,5 +1,4 @@
-//! The firmware's costs: every budget of `lizard sim bench` that is counted in
-//! cycles or bytes.
+//! The firmware's costs: every budget of `lizard sim bench` that is counted in cycles or bytes is met.
 
 use lizard_host::bench::{Figures, rows};
 use lizard_host_tests::{FRAME, FirmwareBench, patrolling, robot};
@@ -22,18 +21,18 @@ fn every_budget_is_met() {
         }
     }
     assert!(missed.is_empty(), "{missed:#?}");
-    // A measurement that found nothing would meet most budgets.
+    // A measurement without any result would also meet most budgets.
     assert!(figures.serial_interrupt > 50 && figures.tick_latency > figures.tick_worst);
     assert!(figures.servo_interrupts > 1000.0);
     assert!(figures.routine_mean.is_some_and(|mean| mean > 1_000.0));
-    // No run gets deeper than the code allows, and the worst is not far away.
+    // No run uses more stack than the static analysis allows, and the worst run comes close to that.
     let unseen = i32::from(figures.stack_spare) - figures.stack_margin;
     println!("{unseen} bytes of stack that no run has used");
     assert!((0..150).contains(&unseen), "{unseen}");
     if let (Some(tick), Some(guard), Some(main)) = (figures.tick_mean, figures.guard, figures.main)
     {
         assert!(tick > 1000.0 && figures.tick_worst as f64 > tick);
-        // Certified cells are two comparisons for each pair of servos.
+        // With certified cells, the guard makes two comparisons for each pair of servos.
         assert!(guard > 100.0 && guard < tick && main > tick);
         assert!(guard < 2_000.0 || !figures.has_maps, "{guard}");
     }
@@ -63,8 +62,8 @@ fn every_tick_computes_one_frame() {
     let calls = bench.time_calls("Control::frame", 2000);
     assert_eq!(calls.len() as u64, 2 * SECOND);
     for pair in calls.windows(2) {
-        // The same distance after each tick, except for an instruction that ends and
-        // the branches in between.
+        // The distance from each tick to the next is constant, except for an instruction in progress and for
+        // branches.
         let apart = pair[1].enter - pair[0].enter;
         assert!(apart.abs_diff(FRAME) < 100, "{apart}");
     }

@@ -1,4 +1,4 @@
-//! Every counter provoked, and read while it changes.
+//! Counters of faults: every one is provoked, and read while it changes.
 
 use lizard_host::sim::frame::FRAME;
 use simulated_uno::Fidelity;
@@ -11,7 +11,7 @@ fn each_overrun_of_the_receiver_is_counted() {
     let mut bench = awake(Fidelity::DataSheet);
     let mut overruns = 0;
     for n in 1..=5 {
-        // Two bytes wait, a third is in the shift register, and some more come.
+        // Two bytes wait in the buffer, a third is in the shift register, and more arrive.
         bench.uno.send(&[b' '; 12]);
         bench.uno.run_cycles(2_000);
         bench.uno.hold(8_000);
@@ -29,15 +29,15 @@ fn a_count_that_carries_while_main_reads_it_is_read_as_before_or_after() {
     in_both(|fidelity| {
         let mut walk = Walk::stand(fidelity);
         let late = walk.address("pulses::LATE");
-        // From here on the robot is stopped by a late pulse, and the count of frames has four
-        // digits, so that all answers are equally long.
+        // From here on a late pulse has stopped the robot, and the count of frames has four digits, so that all
+        // answers have the same length.
         walk.bench.uno.poke(late, 255);
         walk.bench.run_ms(20_000);
         let start = walk.next_frame();
         let mut seen = [0, 0];
-        // Main reads the count shortly before it writes the answer's last part, once most of
-        // the earlier parts are sent. Ticks and edges delay that, so the delay is measured at
-        // the place in the frame where the read is to happen.
+        // Main reads the count shortly before it writes the answer's last part, when most of the earlier parts are
+        // sent. Ticks and edges delay that, so the delay is measured at the same place in the frame at which the
+        // read is to happen.
         let rise = |n: u64| start + 3 * n * FRAME + SLOT;
         let (mut written, mut early, mut frame) = (150_000, 2_800, 0);
         loop {
@@ -46,15 +46,15 @@ fn a_count_that_carries_while_main_reads_it_is_read_as_before_or_after() {
             if again == written {
                 break;
             }
-            // A tick that comes in between only sometimes: a little earlier it always
-            // does, or never.
+            // At some places a tick delays the answer only sometimes. A little earlier in the frame it always does,
+            // or never.
             early += 200 * u64::from(frame > 4);
             written = again;
             assert!(frame < 40, "the answer takes as long each time");
         }
-        // Main is stalled anywhere around that read, and meanwhile A2's rise is late.
+        // Stalls main at different times around that read, and delays A2's rising edge meanwhile.
         for n in 0..500 {
-            // The answer takes most of a frame to send, and a note may come before it.
+            // Sending the answer takes most of a frame, and a note may come before it.
             let rise = rise(frame + n + 2);
             walk.run_to(rise - early - written - 15_000);
             walk.bench.uno.poke(late, 255);
@@ -87,17 +87,17 @@ fn a_count_that_carries_while_main_reads_it_is_read_as_before_or_after() {
     });
 }
 
-/// Asks for the status so that the line's last byte arrives at cycle `arrival`.
+/// Sends `status` so that the line's last byte arrives at cycle `arrival`.
 fn ask_at(walk: &mut Walk, arrival: u64) {
     walk.run_to(arrival - 12_000);
     walk.bench.uno.send(b"status");
-    // The receiver has a byte 9.5 bits after its start.
+    // The receiver has a complete byte 9.5 bits after its start.
     walk.run_to(arrival - 1_320);
     walk.bench.uno.send(b"\n");
 }
 
-/// Cycles from the last byte of `status`, which arrives at cycle `arrival`, to the last part
-/// of its answer, the one with the counts.
+/// Returns the cycles from the last byte of `status`, which arrives at cycle `arrival`, to the last part of its
+/// answer, which contains the counts.
 fn last_part(walk: &mut Walk, arrival: u64) -> u64 {
     ask_at(walk, arrival);
     let parts = walk.bench.time_calls("print::answer", 30);

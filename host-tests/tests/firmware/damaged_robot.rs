@@ -1,6 +1,6 @@
-//! Without a valid section in the flash, whatever is there, the robot sends no pulse, and
-//! everything else works. The core's own tests try every bit (`section/damaged.rs`); here the image
-//! does what they say, on the chip's own flash, in which there is no end of a slice.
+//! Behaviour without a valid robot section in the flash, whatever else is there: the robot sends no pulse, and
+//! everything else works. The core's own tests try every bit (`section/damaged.rs`). Here the image itself is
+//! tested on the chip's flash, where no slice ends.
 
 use std::mem::offset_of;
 use std::ops::Range;
@@ -21,11 +21,11 @@ const DAMAGED: &str = "# fault: the robot in the flash is damaged, write it agai
 
 const LED: Pin = Pin::d(13);
 
-/// Bytes in the flash instead of a robot.
+/// Bytes in the flash in place of a valid robot.
 struct Damage {
     what: String,
     section: Vec<u8>,
-    /// The one line that reports it.
+    /// The only line that reports the damage.
     printed: &'static str,
 }
 
@@ -35,7 +35,7 @@ impl std::fmt::Debug for Damage {
     }
 }
 
-/// The robot's section, changed.
+/// Returns the robot's section with a change.
 fn damage_section(
     what: impl Into<String>,
     printed: &'static str,
@@ -50,7 +50,7 @@ fn damage_section(
     }
 }
 
-/// The same with a correct checksum, as if somebody had written it so.
+/// Returns the robot's section with a change and a correct checksum, as if it had been written this way.
 fn damage_with_checksum(what: &str, change: impl FnOnce(&mut Vec<u8>)) -> Damage {
     damage_section(what, DAMAGED, |section| {
         change(section);
@@ -58,13 +58,13 @@ fn damage_with_checksum(what: &str, change: impl FnOnce(&mut Vec<u8>)) -> Damage
     })
 }
 
-/// The word of the numbers at a field's offset.
+/// Writes a word into the numbers at a field's offset.
 fn put_word(section: &mut [u8], offset: usize, word: u16) {
     let at = size_of::<Header>() + offset;
     section[at..at + 2].copy_from_slice(&word.to_le_bytes());
 }
 
-/// No section, a part of one, and a section for another version.
+/// Returns damages without a section, with a part of one, or with a section for another version.
 fn missing_sections() -> Vec<Damage> {
     let mut all = vec![
         damage_section("erased flash", MISSING, Vec::clear),
@@ -109,7 +109,7 @@ fn missing_sections() -> Vec<Damage> {
     all
 }
 
-/// A flipped bit in each field of the header, and in forty stretches of the rest.
+/// Returns damages with a flipped bit: one in each field of the header, and one in each of forty parts of the rest.
 fn flipped_bits() -> Vec<Damage> {
     let rng = &mut rng(161);
     let header = size_of::<Header>();
@@ -140,7 +140,7 @@ fn flipped_bits() -> Vec<Damage> {
     all
 }
 
-/// Sections whose checksum is right and nothing else.
+/// Returns sections whose checksum is right but whose content is wrong.
 fn wrong_sections() -> Vec<Damage> {
     vec![
         damage_with_checksum("a servo on the serial line", |section| {
@@ -172,7 +172,7 @@ fn wrong_sections() -> Vec<Damage> {
     ]
 }
 
-/// A board with this damage in its flash, just powered on.
+/// Returns a board with this damage in its flash, just powered on.
 fn board(damage: &Damage, fidelity: Fidelity) -> FirmwareBench {
     let mut image: Image = FirmwareBench::image();
     let space = u32::from(START)..u32::from(START) + u32::from(SPACE);
@@ -180,7 +180,7 @@ fn board(damage: &Damage, fidelity: Fidelity) -> FirmwareBench {
     FirmwareBench::with_board(SimulatedBoard::with_image(image, fidelity, robot()))
 }
 
-/// Checks that the firmware finds no robot, keeps the servos still and says so.
+/// Checks that the firmware finds no robot, sends no pulse and reports the damage.
 fn assert_finds_no_robot(damage: &Damage) {
     let bench = &mut board(damage, Fidelity::DataSheet);
     bench.run_ms(300);
@@ -188,7 +188,7 @@ fn assert_finds_no_robot(damage: &Damage) {
     let lines: Vec<String> = bench.lines().iter().map(|line| line.text.clone()).collect();
     assert!(lines[0].starts_with(&banner), "{lines:?}");
     assert_eq!(lines[1..], [damage.printed]);
-    // Only questions are answered.
+    // Only questions are answered, everything else is refused.
     let questions = [Word::Help, Word::QuestionMark, Word::Status, Word::Watch];
     let others = Word::ALL.iter().filter(|word| !questions.contains(word));
     let examples = others.map(|word| word.example().to_owned());
@@ -204,11 +204,11 @@ fn assert_finds_no_robot(damage: &Damage) {
     assert_eq!(answer, "ok help");
     assert!(notes.len() < 10, "{notes:?}");
     assert_eq!(bench.ask("watch 0"), (vec![], "ok watch 0".into()));
-    // Past the time of `boot`.
+    // Wait until after the time of `boot`.
     bench.run_ms(3_200);
     let (notes, status) = bench.ask("status");
     assert!(notes.is_empty(), "{notes:?}");
-    // Neither a pose nor a margin nor a voltage: without a robot they would be nonsense.
+    // The status has no pose, margin or voltage: without a robot, they would be meaningless.
     assert_eq!(
         status,
         "ok gait=rest late=0 rx_lost=0 guard=clear fault=robot reset=power resets=0"
@@ -244,7 +244,7 @@ fn impossible_numbers_move_no_servo_even_with_a_valid_checksum() {
     for_each(&wrong_sections(), assert_finds_no_robot);
 }
 
-/// The check of the section is the only cost at the start, compared with a compiled-in robot.
+/// Compared with a compiled-in robot, the check of the section is the only cost at the start.
 #[test]
 fn the_largest_section_is_checked_within_a_frame() {
     for_each(
@@ -274,7 +274,7 @@ fn without_a_robot_the_led_flashes_eight_times_and_pauses() {
         bench.run_ms(8_000);
         let edges = bench.uno.edges();
         let led: Vec<Edge> = edges.into_iter().filter(|edge| edge.pin == LED).collect();
-        // Lengths of light and dark, in frames.
+        // Durations of light and dark, in frames.
         let frames = led.windows(2).map(|pair| {
             let frames = (pair[1].cycle - pair[0].cycle) as f64 / FRAME as f64;
             (pair[0].high, frames.round() as u64)
@@ -282,7 +282,7 @@ fn without_a_robot_the_led_flashes_eight_times_and_pauses() {
         let frames: Vec<(bool, u64)> = frames.collect();
         let mut pattern = [(true, 8), (false, 8)].repeat(8);
         pattern[15] = (false, 56);
-        // The first flash begins with the program.
+        // The first flash begins with the program, so it may be shorter.
         assert_eq!(frames[1..16], pattern[1..], "{frames:?}");
         assert_eq!(frames[16..32], pattern[..], "{frames:?}");
     });

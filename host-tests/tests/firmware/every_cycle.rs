@@ -1,4 +1,4 @@
-//! A byte at every cycle of a frame moves no edge and is not lost.
+//! Test with a received byte at every cycle of a frame: it moves no edge, and no byte is lost.
 
 use lizard_host::sim::frame::FRAME;
 use simulated_uno::Fidelity;
@@ -6,10 +6,9 @@ use simulated_uno::Fidelity;
 use crate::in_both;
 use crate::walk::Walk;
 
-/// The number of bytes, and the cycles from one to the next, in which main has time to
-/// fall asleep. By the data sheet a byte comes at every cycle of a frame, since this
-/// distance and a frame have no common factor; in stock simavr at every fifth cycle,
-/// since they have the factor five.
+/// Returns the number of bytes, and the cycles from one to the next, in which main has time to fall asleep. With
+/// the data sheet's corrections a byte comes at every cycle of a frame, since this distance and a frame have no
+/// common factor; in stock simavr at every fifth cycle, since they have the factor five.
 const fn sweep(fidelity: Fidelity) -> (u64, u64) {
     match fidelity {
         Fidelity::DataSheet => (FRAME, 3_001),
@@ -19,8 +18,8 @@ const fn sweep(fidelity: Fidelity) -> (u64, u64) {
 
 #[test]
 fn a_byte_at_any_cycle_of_a_frame_moves_no_edge_and_is_not_lost() {
-    // Not a command: so answers are sent, too. They take a third of the lines' time,
-    // and main takes no byte until an answer is nearly sent.
+    // The line is no command, so that answers are sent, too. They take a third of the lines' time, and main takes
+    // no byte until an answer is nearly sent.
     let line = format!("{}\n", "z".repeat(59));
     in_both(|fidelity| {
         let (bytes, apart) = sweep(fidelity);

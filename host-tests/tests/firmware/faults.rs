@@ -1,4 +1,4 @@
-//! The faults that stop a motion: each with its word, its message and its flashes.
+//! Faults that stop a motion: each has its word, its message and its number of flashes.
 
 use lizard_host::sim::frame::FRAME;
 use lizard_host_tests::FirmwareBench;
@@ -8,8 +8,8 @@ use crate::kept::{flashes, pulses, pulses_in, widths_now};
 use crate::walk::Walk;
 use crate::{Status, first_moving_gait, robot_after};
 
-/// Checks a fault's effects: nothing moves, `status` and one line name it, and the LED flashes as
-/// often as given.
+/// Checks a fault's effects: nothing moves, `status` and exactly one line name it, and the LED flashes `code`
+/// times.
 fn assert_stopped(bench: &mut FirmwareBench, word: &str, message: &str, code: usize) {
     let status = Status::of(bench);
     assert_eq!((status.text("gait"), status.text("fault")), ("stop", word));
@@ -34,7 +34,7 @@ fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says() {
     bench.say("speed 90");
     bench.run_ms(700);
     bench.say("speed 100");
-    // Bytes without a line end are no line.
+    // Bytes without a line end do not count as a line.
     bench.uno.send(b"  ");
     bench.run_ms(1500);
     let stopped = bench
@@ -42,7 +42,7 @@ fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says() {
         .iter()
         .find(|line| line.text.contains("deadman says"))
         .map(|line| (line.cycle - start) / 16_000);
-    // 1400 ms and the answers' time; the line itself takes 5 ms.
+    // 800 ms after the last line, which came after 1400 ms and the time of an answer; a line takes 5 ms.
     assert!(
         stopped.is_some_and(|ms| (2_190..2_260).contains(&ms)),
         "{stopped:?}"
@@ -101,7 +101,7 @@ fn a_stack_that_has_reached_the_data_stops_the_motion_for_good() {
         walk.bench.run_ms(100);
         let message = "the stack has grown into the data, stopped";
         assert_stopped(&mut walk.bench, "stack", message, 6);
-        // The data can no longer be trusted, so the robot does not move again.
+        // The data may be corrupt, so the robot does not move again.
         walk.bench.say(&first_moving_gait());
         walk.bench.run_ms(100);
         let held = widths_now(&mut walk.bench);

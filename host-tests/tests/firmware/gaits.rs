@@ -1,4 +1,4 @@
-//! The gaits as the servos get them, and their travel, compared with the gaits in floating point.
+//! Gaits as the servos receive them: the pulses and the travel agree with the gaits in floating point.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -9,19 +9,19 @@ use simulated_uno::Fidelity;
 
 use crate::{SECOND, awake, for_each};
 
-/// Largest deviation of the tables from floating point, deg: the project's promise.
+/// Largest deviation of the tables from floating point that the project promises, deg.
 const TABLES: f64 = 0.50;
-/// Rounding to a cycle of 62.5 ns, deg: half a cycle each for the width and for the neutral width.
+/// Returns the error of rounding to a cycle of 62.5 ns, deg: half a cycle each for the width and for the neutral
+/// width.
 fn cycle() -> f64 {
     let finest = robot().servos().map(|servo| servo.us_per_degree.abs());
     1.0 / 16.0 / finest.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// Share of its pace by which a starting gait accelerates in each of seven frames.
+/// Number of frames in which a gait accelerates at its start, and the share of its pace that each of them adds.
 const ACCELERATION: (usize, f64) = (7, 147.0 / 1024.0);
 
-/// Servo angles frame by frame, deg, from a second after power-on, when the gait
-/// is asked for.
+/// Returns the servo angles frame by frame, deg, from a second after power-on, when the gait is ordered.
 fn decode_angles(gait: &CheckedGait, fidelity: Fidelity) -> Vec<[f64; 4]> {
     let mut bench = awake(fidelity);
     let line = gait.name().replace('-', " ");
@@ -31,19 +31,19 @@ fn decode_angles(gait: &CheckedGait, fidelity: Fidelity) -> Vec<[f64; 4]> {
     instants(robot(), &frames).into_iter().map(angles).collect()
 }
 
-/// The phase this many frames after a gait has begun.
+/// Returns the phase of a gait this many frames after its start.
 fn phase(gait: &CheckedGait, frames: usize) -> f64 {
     let pace = |frame: usize| (frame as f64 * ACCELERATION.1).min(1.0);
     let full: f64 = (1..=frames).map(pace).sum();
     gait.phase(full / SECOND as f64)
 }
 
-/// The angles of a gait that begins now, frame by frame, deg.
+/// Returns the angles of a gait frame by frame from its start, in floating point, deg.
 fn floating(gait: &CheckedGait, frames: usize) -> Vec<[f64; 4]> {
     (0..frames).map(|n| gait.angles(phase(gait, n))).collect()
 }
 
-/// The largest deviation of a servo from the gait that begins at frame `start`.
+/// Returns the largest deviation of a servo from the gait if it starts at frame `start`, deg.
 fn worst(float: &[[f64; 4]], frames: &[[f64; 4]], start: usize) -> f64 {
     let pairs = frames[start..].iter().flatten().zip(float.iter().flatten());
     pairs.fold(0.0, |largest, (actual, expected)| {
@@ -51,11 +51,12 @@ fn worst(float: &[[f64; 4]], frames: &[[f64; 4]], start: usize) -> f64 {
     })
 }
 
-/// The frame at which the gait begins: the one unknown of the comparison.
+/// Returns the frame at which the gait starts, the only unknown of the comparison: the one with the smallest
+/// deviation.
 fn first_frame(gait: &CheckedGait, float: &[[f64; 4]], frames: &[[f64; 4]]) -> usize {
     let by_worst =
         |a: &usize, b: &usize| worst(float, frames, *a).total_cmp(&worst(float, frames, *b));
-    // The move to the first pose takes its time, and a cycle must follow.
+    // The move to the first pose comes before, and a cycle must follow.
     let last = frames.len() - (gait.period() * SECOND as f64) as usize - 10;
     let start = (0..last).min_by(by_worst);
     start.expect("a second has frames")
@@ -79,7 +80,7 @@ fn the_pulses_of_every_gait_follow_it_frame_by_frame() {
             // apart.
             if gait.moves() {
                 assert!(error > 0.0, "{}: tables are rounded", gait.name());
-                // The very first frame has no earlier one.
+                // The first frame has no previous one.
                 let others = [Some(start + 1), start.checked_sub(1)];
                 for other in others.into_iter().flatten() {
                     assert!(worst(&float, &frames, other) > error, "{}", gait.name());
@@ -104,14 +105,14 @@ fn the_pulses_of_every_gait_lead_where_the_contact_model_says() {
         let frames = decode_angles(gait, Fidelity::DataSheet);
         let float = floating(gait, frames.len());
         let start = first_frame(gait, &float, &frames);
-        // From the first frame at full pace that begins a cycle, whole cycles: two
-        // of those that are no whole number of frames.
+        // Whole cycles, from the first frame at full pace that begins a cycle: two if a cycle is no whole number of
+        // frames.
         let cycles = if (gait.period() * SECOND as f64).fract() == 0.0 {
             1
         } else {
             2
         };
-        // In other periods the missing part of a frame matters little.
+        // For other periods, the missing part of a frame is small enough.
         let length = (f64::from(cycles) * gait.period() * SECOND as f64) as usize;
         let step = 1.0 / (gait.period() * SECOND as f64);
         let from = (start + ACCELERATION.0..frames.len())
@@ -130,7 +131,7 @@ fn the_pulses_of_every_gait_lead_where_the_contact_model_says() {
             way.turn / f64::from(cycles),
         );
         println!("{name:<10} {ahead:7.2} mm {turned:7.2} deg");
-        // Which foot holds may depend on a tenth of a degree.
+        // The holding feet may depend on a tenth of a degree.
         let size = robot().lizard().links.l10 / 135.0;
         let max = (0.3 * size).max(forward.abs() * 0.02);
         assert!((ahead - forward).abs() <= max, "{name}: {way:?}");

@@ -1,4 +1,4 @@
-//! The guard on the chip: its refusals, and the proof that no frame gets past it.
+//! Tests of the guard on the chip: it refuses exactly the unsafe poses, and no unsafe frame gets past it.
 
 use fastrand::Rng;
 use lizard_core::guard::clearance::Clearance;
@@ -13,13 +13,13 @@ use simulated_uno::Fidelity;
 
 use crate::{SECOND, Status, awake, for_each, neutral_widths};
 
-/// The most that the guard may differ from floating point in a slider's travel, mm.
+/// Returns the largest error of the guard in a slider's travel against floating point, mm.
 fn stroke_band() -> f64 {
     let scales = Side::ALL.map(|side| robot().firmware().side(side).scale.bits);
     STEPS_BAND / f64::from(1 << scales[0].min(scales[1]))
 }
 
-/// The largest error of the guard in a margin, if type-2 margins are at least `type2`.
+/// Returns the largest error of the guard in a margin, if type-2 margins are at least `type2`.
 fn margin_error(type2: f64) -> f64 {
     let ends = [
         (End::Head, kinematics::End::Head),
@@ -32,7 +32,7 @@ fn margin_error(type2: f64) -> f64 {
     bands[0].max(bands[1])
 }
 
-/// The limits, stricter by the guard's tolerance (`by` = 1) or laxer (-1).
+/// Returns the limits, made stricter by the guard's tolerance (`by` = 1) or less strict (`by` = -1).
 fn limits(by: f64) -> Limits {
     let limits = robot().limits();
     let (margin, stroke) = (margin_error(limits.type2), stroke_band());
@@ -45,13 +45,13 @@ fn limits(by: f64) -> Limits {
     }
 }
 
-/// True if a pose (deg, chassis frame) is safe by these limits.
+/// True if a pose (deg, chassis frame) is within these limits.
 fn is_safe(angles: [f64; 4], limits: &Limits) -> bool {
     let solved = robot().lizard().solve(&Pose::from(angles));
     solved.is_ok_and(|solution| limits.allow(&solution))
 }
 
-/// True if every servo reaches its angle by more than rounding.
+/// True if every servo's angle is inside its travel by more than the rounding.
 fn is_within_travel(angles: [f64; 4]) -> bool {
     robot().servos().iter().zip(angles).all(|(servo, angle)| {
         let (min, max) = servo.travel();
@@ -60,7 +60,7 @@ fn is_within_travel(angles: [f64; 4]) -> bool {
     })
 }
 
-/// A pose within this many degrees of neutral, as it is typed.
+/// Returns a random pose within this many degrees of neutral, rounded as it is typed.
 fn near_pose(rng: &mut Rng, within: f64) -> [f64; 4] {
     std::array::from_fn(|i| {
         let angle = robot().servos()[i].neutral + within * (2.0 * rng.f64() - 1.0);
@@ -68,7 +68,7 @@ fn near_pose(rng: &mut Rng, within: f64) -> [f64; 4] {
     })
 }
 
-/// A safe pose far from neutral; the path to it may be unsafe.
+/// Returns a random safe pose far from neutral. The path to it may be unsafe.
 fn random_far_pose(rng: &mut Rng) -> [f64; 4] {
     loop {
         let angles = near_pose(rng, 80.0);
@@ -112,9 +112,9 @@ fn a_pose_is_accepted_exactly_where_floating_point_finds_it_safe() {
     });
 }
 
-/// Reads the condition that a refusal names, and its value, if the guard knows one:
-/// `err 4 leg margin of A1 is 0.259, ...`, `err 4 type-2 margin of the head is below 0.1,
-/// ...`, `err 5 left slider is at 55.35 mm, ...`.
+/// Parses a refusal into the name of the broken condition, with its error code, and the value if the guard knows
+/// one: `err 4 leg margin of A1 is 0.259, ...`, `err 4 type-2 margin of the head is below 0.1, ...`, `err 5 left
+/// slider is at 55.35 mm, ...`.
 fn parse_refusal(answer: &str) -> (&str, Option<f64>) {
     let (name, rest) = answer.split_once(" is ").expect("a name and a value");
     if rest.starts_with("below 0.1, ") {
@@ -125,11 +125,11 @@ fn parse_refusal(answer: &str) -> (&str, Option<f64>) {
     (&name[4..], Some(value.expect("a number")))
 }
 
-/// The same value in floating point, and how much the guard may be off by; the name
-/// begins with its code.
+/// Returns the value of the named condition in floating point, and the guard's largest error in it. The name begins
+/// with the error code.
 fn value(solution: &Solution, name: &str) -> Option<(f64, f64)> {
     let margins = &solution.margins;
-    // Negative where the crank tips have crossed.
+    // The margin is negative if the crank tips have crossed.
     let type2 = |end: usize| {
         let gap = [&solution.head, &solution.tail][end].gap;
         if gap.x < 0.0 {
@@ -138,7 +138,7 @@ fn value(solution: &Solution, name: &str) -> Option<(f64, f64)> {
             margins.type2[end]
         }
     };
-    // Where couplers are nearly in line, a step of length turns them a lot.
+    // Where the couplers are nearly in line, a rounding step of a length turns them a lot.
     let of_end = |end: usize| margin_error(margins.type2[end].max(0.05)) + 0.0005;
     let of_stroke = stroke_band() + 0.005;
     let all = [
@@ -174,8 +174,8 @@ fn a_refusal_names_the_margin_and_its_value_or_says_that_it_knows_none() {
         let solution = match robot().lizard().solve(&Pose::from(angles)) {
             Ok(solution) => solution,
             Err(open) => {
-                // A loop that does not close has no value. The head is checked before the tail, and
-                // may have one.
+                // A loop that does not close has no value. But the head is checked first, and may have a value
+                // while the tail does not close.
                 let head = robot().lizard().end(kinematics::End::Head);
                 let head = head.forward(angles[0], angles[1]);
                 match head {
@@ -243,7 +243,7 @@ fn no_frame_breaks_a_limit_for_any_commands() {
             let angles = at.angles.expect("four pulses");
             assert!(is_safe(angles, &lax), "{at:?}");
         }
-        // Nothing jumps either: a change is at most what a gait or a move may ask for.
+        // No servo jumps: it moves in a frame at most as far as the slew limits allow.
         let pace = robot().pace();
         let fastest = pace.gait_slew.max(pace.slew) / 50.0;
         for (pair, times) in sent.windows(2).zip(frames.windows(2)) {
@@ -260,8 +260,8 @@ fn no_frame_breaks_a_limit_for_any_commands() {
     });
 }
 
-/// Two safe poses, each with a safe path from neutral; the straight path between them is unsafe for
-/// longer than a frame.
+/// Returns two safe poses, each with a safe path from and to neutral, where the straight path between them is
+/// unsafe for longer than a frame. `None` if none are found.
 fn poses_with_unsafe_path_between() -> Option<[[f64; 4]; 2]> {
     let mut rng = Rng::with_seed(4);
     let firmware = robot().firmware();
@@ -288,7 +288,7 @@ fn poses_with_unsafe_path_between() -> Option<[[f64; 4]; 2]> {
             if let Some(edge) = found {
                 return Some([*edge, pose]);
             }
-            // Few enough to try each pair: a robot may have no such path.
+            // Keeps few poses, so that each pair can be tried: a robot may have no such path.
             if edges.len() < 40 {
                 edges.push(pose);
             }
@@ -297,7 +297,7 @@ fn poses_with_unsafe_path_between() -> Option<[[f64; 4]; 2]> {
     None
 }
 
-/// Checks, for a robot without such a path, that it reaches every safe pose and is never held.
+/// Checks that a robot without such a path reaches every safe pose and is never held.
 fn every_safe_pose_is_reached() {
     let mut rng = Rng::with_seed(4);
     let mut bench = awake(Fidelity::DataSheet);
@@ -334,7 +334,7 @@ fn a_path_that_breaks_a_limit_ends_before_that() {
         assert!(frames.iter().all(|frame| frame.widths == frames[0].widths));
         let held = instants(robot(), &frames)[0].angles.expect("four pulses");
         assert!(is_safe(held, &limits(-1.0)) && held != from);
-        // It is not stuck: the path back to neutral is safe.
+        // The robot can move again: the path back to neutral is safe.
         assert_eq!(bench.say("stand"), "ok stand");
         bench.run_ms(5000);
         assert_eq!(bench.run_for_frames(1)[0].widths(), neutral_widths());

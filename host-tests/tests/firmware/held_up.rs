@@ -1,4 +1,4 @@
-//! Blocked interrupts: within the time that the rules of the pulses allow, and beyond it.
+//! Tests with blocked interrupts, within the time that the rules of the pulses allow and beyond it.
 
 use fastrand::Rng;
 use lizard_host::sim::frame::{FRAME, Frame};
@@ -8,10 +8,10 @@ use crate::pulses::servo_edges;
 use crate::walk::{SLOT, Walk};
 use crate::{in_both, neutral_widths};
 
-/// Cycles that other handlers and stretches with interrupts off may take at most.
+/// Longest time that other handlers and code with interrupts disabled may take, cycles.
 const MAY_TAKE: u64 = 160;
 
-/// A stretch of `length` cycles with interrupts off, which begins some cycles before an edge.
+/// A time of `length` cycles with interrupts blocked, which begins `before` cycles before an edge.
 #[derive(Clone, Copy, Debug)]
 struct Hold {
     before: u64,
@@ -26,7 +26,8 @@ enum Edges {
     Both,
 }
 
-/// Runs a frame for each hold, which delays the edges of all servos.
+/// Runs one frame for each hold, which delays the chosen edges of all servos. Returns the frames with their ordered
+/// widths.
 fn sweep(walk: &mut Walk, edges: Edges, holds: &[Hold]) -> Vec<(Frame, [u64; 4])> {
     let start = walk.next_frame();
     let commands = walk.commands(start, holds.len() as u64);
@@ -46,8 +47,8 @@ fn sweep(walk: &mut Walk, edges: Edges, holds: &[Hold]) -> Vec<(Frame, [u64; 4])
     walk.frames_since(start)
 }
 
-/// Holds of several lengths beyond the allowed one, every few cycles, from one that ends
-/// before the edge to one that begins at it.
+/// Returns holds of several lengths beyond the allowed one, with starts every few cycles: from holds that begin at
+/// the edge to holds that end before it.
 fn holds_beyond_limit() -> Vec<Hold> {
     [200, 230, 300, 500, 900]
         .into_iter()
@@ -71,7 +72,7 @@ fn a_stretch_that_the_rules_allow_moves_no_edge_wherever_it_begins() {
     });
 }
 
-// A late edge is a fault that stops a gait: from here on the robot stands.
+// A late edge is a fault that stops a gait, so in the following tests the robot stands.
 
 #[test]
 fn a_late_rising_edge_drops_its_pulse_and_is_counted() {
@@ -142,7 +143,7 @@ fn interrupts_off_for_most_of_a_slot_cost_its_pulse_and_nothing_else() {
                     expected[servo as usize] = None;
                 }
                 assert_eq!(frame.widths, expected, "A{} and {length}", servo + 1);
-                // Each starts exactly on the grid.
+                // Each pulse starts exactly on the grid of slots.
                 let starts = [0, 1, 2, 3].map(|n| frame.start + n * SLOT);
                 let on_grid =
                     |(actual, due): (Option<u64>, u64)| actual.is_none_or(|actual| actual == due);
@@ -162,8 +163,7 @@ fn a_falling_edge_that_is_missed_is_made_when_the_next_slot_begins() {
         let mut walk = Walk::stand(fidelity);
         let pins = walk.bench.pins();
         let neutral = neutral_widths();
-        // The hold ends `beyond` cycles after a point 220 cycles before the next slot's
-        // edge.
+        // The hold ends `beyond` cycles after a point that is 220 cycles before the next slot's edge.
         for beyond in (0..600).step_by(20) {
             for servo in 0..4 {
                 walk.bench.run_for_frames(1);
@@ -222,7 +222,7 @@ fn milliseconds_without_interrupts_shorten_no_pulse_nor_exceed_its_slot() {
             assert_eq!(most_pins_high(&edges), 1);
             for (pin, neutral) in pins.into_iter().zip(neutral_widths()) {
                 for pulse in walk.bench.uno.pulses(pin) {
-                    // At worst interrupts come back in the middle of the next slot.
+                    // In the worst case, interrupts are enabled again in the middle of the next slot.
                     let latest = neutral.max(SLOT + 300).max(neutral + length);
                     assert!(
                         (neutral..=latest).contains(&pulse.width),

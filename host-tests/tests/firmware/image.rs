@@ -1,5 +1,5 @@
-//! The contents of the ELF: no panic, no float, no core::fmt, and tables that
-//! stay in flash.
+//! Contents of the firmware's ELF: it has no panic, no floating point and no core::fmt, and its tables stay in
+//! flash.
 
 use std::process::Command;
 
@@ -12,7 +12,7 @@ fn image() -> Image {
     FirmwareBench::image()
 }
 
-/// The functions whose paths contain one of these parts.
+/// Returns the paths of the functions that contain one of these parts.
 fn functions_with(parts: &[&str]) -> Vec<String> {
     let image = image();
     let functions = image.symbols().iter().filter(|symbol| symbol.is_function);
@@ -47,8 +47,8 @@ fn nothing_in_it_uses_core_fmt() {
 
 #[test]
 fn nothing_in_it_is_floating_point() {
-    // avr-libc's and compiler-rt's routines: __addsf3, __muldf3, __floatsisf,
-    // __fixunssfsi, __fp_split3 and their kin, and libm.
+    // Routines of avr-libc and compiler-rt (__addsf3, __muldf3, __floatsisf, __fixunssfsi, __fp_split3 and similar
+    // ones) and of libm.
     let image = image();
     let functions = image.symbols().iter().filter(|symbol| symbol.is_function);
     let is_float = |name: &str| {
@@ -86,7 +86,7 @@ fn tables_and_messages_stay_in_flash() {
     for n in 0..waves.len() {
         let wave = waves.get(n).expect("a waveform").load();
         for samples in wave.windows(6) {
-            // A held leg gives runs of one value, which RAM may contain by chance.
+            // A held leg gives a run of equal values, which RAM may contain by chance.
             if samples.iter().all(|sample| *sample == samples[0]) {
                 continue;
             }
@@ -143,7 +143,7 @@ fn an_image_without_room_is_refused_with_the_excess_and_what_is_largest() {
         .symbol("__code_end")
         .expect("it is in the ELF")
         .address;
-    // The script decides by the addresses at which the robot begins and ends.
+    // The script uses the addresses at which the robot's section begins and ends.
     let check_with = |symbol: &str, address: u64| {
         let done = Command::new("avr-objcopy")
             .arg(format!("--strip-symbol={symbol}"))

@@ -1,4 +1,4 @@
-//! A button and an obstacle switch at the pins of the running image: the patrol of docs/gaits.md.
+//! Tests of a button and an obstacle switch at the pins of the running image, with the patrol of docs/gaits.md.
 
 use std::fs;
 use std::sync::LazyLock;
@@ -12,23 +12,23 @@ use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin};
 use crate::kept::{power_cycle, pulses_in, widths_now};
 use crate::{SECOND, Status, in_both};
 
-/// The pins of docs/gaits.md.
+/// The input pins in docs/gaits.md.
 const BUTTON: Pin = Pin::a(1);
 const NOSE: Pin = Pin::a(2);
 
-/// The longest that a contact needs to count, ms.
+/// The longest time for which a contact must be closed to count, ms.
 const DEBOUNCED: u64 = 60;
 
-/// The greatest mean of a frame's computation, cycles.
+/// The largest mean duration of a frame's computation, cycles.
 const TICK: u64 = 5_000;
 
-/// The paper's robot with the patrol of docs/gaits.md.
+/// Returns the paper's robot with the patrol of docs/gaits.md.
 fn robot() -> &'static Robot {
     static ROBOT: LazyLock<Robot> = LazyLock::new(|| with_pins("A1", "A2"));
     &ROBOT
 }
 
-/// The same with its contacts at other pins.
+/// Returns the same robot with its contacts at other pins.
 fn with_pins(button: &str, nose: &str) -> Robot {
     let read = |file: &str| fs::read_to_string(root().join(file)).expect(file);
     let docs = read("docs/gaits.md");
@@ -43,7 +43,7 @@ fn with_pins(button: &str, nose: &str) -> Robot {
     Robot::parse(&text).expect("a robot")
 }
 
-/// This robot a second after power-on.
+/// Returns a board with this robot, a second after power-on.
 fn awake(robot: &Robot, fidelity: Fidelity) -> FirmwareBench {
     let board = SimulatedBoard::boot(&FirmwareBench::elf(), fidelity, robot).expect("a banner");
     let mut bench = FirmwareBench::with_board(board);
@@ -54,7 +54,7 @@ fn awake(robot: &Robot, fidelity: Fidelity) -> FirmwareBench {
     bench
 }
 
-/// A robot that waits for its button.
+/// Returns a robot whose patrol waits for the button.
 fn waiting(fidelity: Fidelity) -> FirmwareBench {
     let mut bench = awake(robot(), fidelity);
     assert_eq!(bench.say("patrol"), "ok patrol");
@@ -63,7 +63,7 @@ fn waiting(fidelity: Fidelity) -> FirmwareBench {
     bench
 }
 
-/// A robot that walks until there is a wall.
+/// Returns a robot whose patrol walks until it meets a wall.
 fn walking(fidelity: Fidelity) -> FirmwareBench {
     let mut bench = waiting(fidelity);
     press(&mut bench, BUTTON, 200);
@@ -77,7 +77,7 @@ fn press(bench: &mut FirmwareBench, pin: Pin, ms: u64) {
     bench.uno.set_contact(pin, false);
 }
 
-/// The lines since line `since` that no command asked for, except for those of the start.
+/// Returns the lines from line `since` on that no command asked for, without those printed at the start.
 fn notes(bench: &mut FirmwareBench, since: usize) -> Vec<String> {
     let lines = bench.lines()[since..].iter().map(|line| line.text.clone());
     let starts = ["# lizard", "# calibration"];
@@ -87,7 +87,7 @@ fn notes(bench: &mut FirmwareBench, since: usize) -> Vec<String> {
     lines.filter(is_note).collect()
 }
 
-/// The travel of the contact model with these pulses.
+/// Computes the travel for these pulses by the contact model.
 fn travel(frames: &[Frame]) -> Travel {
     let servos = robot().servos();
     let angles = |frame: &Frame| {
@@ -135,7 +135,7 @@ fn after_power_on_and_a_press_the_robot_patrols_without_a_computer() {
             let displacement = travel(&frames);
             assert!(displacement.turn > 75.0, "it has turned: {displacement:?}");
             assert!(notes(&mut bench, walked).is_empty());
-            // No second press: only the wall is waited for.
+            // No second press is needed: the patrol waits only for the wall.
             bench.run_ms(2_500);
             let printed = notes(&mut bench, walked);
             assert_eq!(printed, ["# waiting for nose"]);

@@ -11,7 +11,7 @@ const LED: Pin = Pin::d(13);
 /// Cycles of a millisecond.
 pub const MS: u64 = simulated_uno::CYCLES_PER_MS;
 
-/// Runs for some milliseconds and returns the pulses of A1 to A4, whatever happens meanwhile.
+/// Runs for `ms` milliseconds and returns the pulses of A1 to A4 in that time.
 pub fn pulses_in(bench: &mut FirmwareBench, ms: u64) -> [Vec<Pulse>; 4] {
     bench.uno.take_edges();
     bench.uno.run_ms(ms);
@@ -28,14 +28,14 @@ pub fn widths_now(bench: &mut FirmwareBench) -> [u64; 4] {
     pulses_in(bench, 50).map(|pulses| pulses.last().map_or(0, |pulse| pulse.width))
 }
 
-/// Switches the power off and on, and waits for the banner. Edges so far are dropped.
+/// Switches the power off and on, discards the edges recorded so far, and waits for the banner.
 pub fn power_cycle(bench: &mut FirmwareBench) {
     let lines_before = bench.lines().len();
     bench.uno.power_cycle();
     bench.uno.take_edges();
     for _ in 0..500 {
         bench.uno.run_ms(1);
-        // The rest of a line that the power cut off may come first.
+        // The rest of a line that the power cut interrupted may come first.
         let lines = &bench.lines()[lines_before..];
         if lines.iter().any(|line| line.text.contains("# lizard ")) {
             return;
@@ -64,13 +64,13 @@ pub fn slew_limit(servo: usize) -> u64 {
     slew_limit_at(robot().servos()[servo].us_per_degree, robot().pace().slew)
 }
 
-/// The same for a servo with this many us per degree, at a slew limit in deg/s.
+/// The slew limit, cycles per frame, of a servo with `gain` us per degree at `slew` deg/s.
 fn slew_limit_at(gain: f64, slew: f64) -> u64 {
-    // A cycle of rounding at each end, and the rounding of the limit, half a step of an angle.
+    // One cycle of rounding at each end, and one for the rounding of the limit: half a step of an angle.
     (slew / 50.0 * gain.abs() * 16.0) as u64 + 3
 }
 
-/// Checks that no pulse of a gait is farther from the one before than its slew limit allows.
+/// Asserts that no pulse width of a gait differs from the previous one by more than the slew limits allow.
 pub fn assert_no_leap_in_a_gait(pulses: &[Vec<Pulse>; 4]) {
     let pace = robot().pace();
     for (servo, pulses) in robot().servos().iter().zip(pulses) {
@@ -82,13 +82,13 @@ pub fn assert_no_leap_in_a_gait(pulses: &[Vec<Pulse>; 4]) {
     }
 }
 
-/// Checks that no pulse is farther from the one before than the slew limit allows.
+/// Asserts that no pulse width differs from the previous one by more than the slew limit allows.
 pub fn assert_no_leap(pulses: &[Vec<Pulse>; 4]) {
     let gains = robot().servos().each_ref().map(|servo| servo.us_per_degree);
     assert_no_leap_at(pulses, gains);
 }
 
-/// The same for servos with this many us per degree.
+/// Like [`assert_no_leap`], for servos with these gains, us per degree.
 pub fn assert_no_leap_at(pulses: &[Vec<Pulse>; 4], gains: [f64; 4]) {
     for (servo, (pulses, gain)) in pulses.iter().zip(gains).enumerate() {
         for pair in pulses.windows(2) {
@@ -102,13 +102,13 @@ pub fn assert_no_leap_at(pulses: &[Vec<Pulse>; 4], gains: [f64; 4]) {
     }
 }
 
-/// Counts the LED's flashes between each two pauses in some seconds.
+/// Counts the LED's flashes between successive pauses, for `seconds` seconds.
 pub fn flashes(bench: &mut FirmwareBench, seconds: u64) -> Vec<usize> {
     bench.uno.take_edges();
     bench.uno.run_ms(1000 * seconds);
     let edges = bench.uno.edges();
     let edges: Vec<_> = edges.iter().filter(|edge| edge.pin == LED).collect();
-    // A flash is 160 ms of light and 160 of dark, a pause a second more.
+    // A flash is 160 ms of light and 160 ms of dark; a pause is one second longer.
     let mut patterns = Vec::new();
     let mut count = None;
     for pair in edges.windows(2) {

@@ -5,7 +5,7 @@ use fastrand::Rng;
 use lizard_core::console::word::Word;
 use lizard_host_tests::robot;
 
-/// A number as a person would type it, within some range and sometimes beyond.
+/// A number as a person would type it, from `min` to `max` and sometimes a little outside.
 fn number(rng: &mut Rng, min: f64, max: f64) -> String {
     let beyond = (max - min) * 0.2;
     let number = min - beyond + rng.f64() * (max - min + 2.0 * beyond);
@@ -43,7 +43,7 @@ fn line(rng: &mut Rng) -> String {
         }
         11 => format!("speed {}", rng.u8(..)),
         12 => format!("watch {}", rng.u16(..300)),
-        // Lines with long answers rarely.
+        // Lines with long answers are rare.
         13 => match rng.u8(..16) {
             0 => ["help", "?"][rng.usize(..2)].into(),
             1 => "cal".into(),
@@ -67,7 +67,7 @@ fn line(rng: &mut Rng) -> String {
     }
 }
 
-/// A line that is nearly right, without its end.
+/// A nearly valid line, without its line end.
 pub fn mutated(rng: &mut Rng) -> Vec<u8> {
     let mut bytes = line(rng).into_bytes();
     for _ in 0..[0, 0, 0, 1, 1, 2, 3][rng.usize(..7)] {

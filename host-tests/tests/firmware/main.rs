@@ -5,8 +5,8 @@
 //! and on one corrected by the data sheet: they differ in interrupt latency and
 //! in the receiver, and what holds in both does not depend on either.
 //!
-//! The ELF is that of `make firmware`. One that is older than the
-//! sources differs from the core that these tests are built with, and fails.
+//! The ELF is built by `make firmware`. If it is older than the sources, it differs from the core
+//! that these tests are built with, and they fail.
 
 use std::collections::HashMap;
 use std::thread;
@@ -53,9 +53,9 @@ mod watchdog;
 /// Frames in a second.
 const SECOND: u64 = 50;
 
-/// A line without the parts that the core on the host cannot know. A status is written in
-/// three parts, each in the frame in which the serial line has room for it; and stock simavr has
-/// a reference of 1.1 V, whatever the robot's own is.
+/// Removes from a line the values that the core on the host cannot know. A status is written in three
+/// parts, each in the frame in which the serial line has room for it, so the values of a moving robot
+/// depend on timing. Stock simavr has a reference of 1.1 V, whatever the robot's own is.
 fn comparable_line(line: &str, fidelity: Fidelity) -> String {
     let mut unknown = vec!["phase=", "pose=", "margin=", "frames="];
     if fidelity == Fidelity::Stock {
@@ -101,8 +101,8 @@ fn awake(fidelity: Fidelity) -> FirmwareBench {
     bench
 }
 
-/// The command of the robot's first gait that moves. The image is tested on robots that
-/// have one: with none, most of these tests would see a robot that stands.
+/// The command of the robot's first gait that moves. Every robot to be tested needs one: without it,
+/// most of these tests would see a robot that only stands.
 fn first_moving_gait() -> String {
     let moving = tour::moving(robot());
     let first = moving
@@ -136,7 +136,7 @@ fn neutral_widths() -> [u64; 4] {
 /// Ends a flood and waits until the robot has answered the rest of it.
 fn end_flood(bench: &mut FirmwareBench) {
     bench.uno.flood(b"");
-    // 32 times `?` may wait, and each has an answer of a kilobyte.
+    // Up to 32 lines `?` may be waiting, and each answer is a kilobyte.
     bench.run_ms(5000);
     bench.uno.send(b"\n");
     bench.run_ms(200);

@@ -13,7 +13,7 @@ const WIDTHS: std::ops::RangeInclusive<u16> = 1_000..=63_000;
 fn a_width_that_a_slot_has_no_room_for_gives_no_pulse() {
     in_both(|fidelity| {
         let mut walk = Walk::stand(fidelity);
-        // Two sets of four widths of two bytes; A3's in both.
+        // Two sets of four widths of two bytes each; A3's width in both sets.
         let frames = walk.address("pulses::FRAMES");
         let a3 = [frames + 4, frames + 12];
         let widths = [
@@ -57,7 +57,7 @@ fn after_the_switch_only_the_pulse_under_way_ends_and_the_tick_goes_on() {
             let frames = Status::of(&mut walk.bench).number("frames");
             walk.bench.run_ms(1000);
             for edge in crate::pulses::servo_edges(&walk.bench) {
-                // One cycle is that of the store under way.
+                // One cycle of tolerance, for a store that is already executing.
                 assert!(!edge.high || edge.cycle <= switched + 1, "{n}: {edge:?}");
             }
             for (pin, neutral) in walk.bench.pins().into_iter().zip(neutral_widths()) {

@@ -13,7 +13,7 @@ use simulated_uno::Fidelity;
 
 use crate::{SECOND, for_each};
 
-/// Lines that move nothing, each sent at the full rate of the line.
+/// Lines that move no servo, each sent at the full rate of the serial line.
 const FLOODS: [&str; 5] = ["status\n", "help\n", "cal\n", "?\r", "x"];
 
 /// The number of robots; `make other-robots` tries 100.
@@ -49,7 +49,7 @@ fn no_frame_is_late_for_any_robot_in_any_gait_under_any_flood() {
         for n in (*half..count()).step_by(2) {
             let mut rng = rng(2_000 + n);
             let (text, mut robot) = random_robot(&mut rng);
-            // Every third robot gets many gaits, every third long names.
+            // A third of the robots gets many gaits with short names, another third many with long names.
             match n % 3 {
                 1 => robot = with_many_gaits(&text, 10),
                 2 => robot = with_many_gaits(&text, MAX_NAME_BYTES),
@@ -67,7 +67,7 @@ fn no_frame_is_late_for_any_robot_in_any_gait_under_any_flood() {
 
 #[test]
 fn no_step_of_main_delays_a_frame_too_long_however_many_gaits_there_are() {
-    /// Cycles of the longest command besides the search for a gait: `factory`.
+    /// Cycles of the longest command, `factory`, not counting the search for a gait.
     const OTHERS: usize = 34_000;
     let (text, robot) = random_robot(&mut rng(2_000));
     let lengths = [10, 24, MAX_NAME_BYTES];
@@ -86,7 +86,7 @@ fn no_step_of_main_delays_a_frame_too_long_however_many_gaits_there_are() {
             cycles as usize <= largest.max(OTHERS),
             "{cycles} of {largest}"
         );
-        // Where the search takes longest, the bound is not far above it.
+        // Where the search is the longest step, the bound is less than twice the measured time.
         assert!(
             largest < OTHERS || cycles as usize > largest / 2,
             "{cycles} of {largest}"

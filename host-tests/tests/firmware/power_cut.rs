@@ -1,4 +1,4 @@
-//! Power cuts while settings are saved, at every byte and with every way to tear a byte; and
+//! Power cuts while settings are saved, at every byte and with every torn value of a byte; and
 //! bits that change over the years.
 
 use lizard_core::memory::copies::{self, Outcome};
@@ -18,11 +18,11 @@ fn load(contents: &[u8; EEPROM_SIZE]) -> (Settings, Outcome) {
     (settings, outcome)
 }
 
-/// A board on which settings have been saved twice, and others set and not saved.
+/// A board whose settings were saved twice and then changed without saving.
 struct Saved {
     bench: FirmwareBench,
     before: [u8; EEPROM_SIZE],
-    /// The output of `cal` for the saved settings and for the others.
+    /// The output of `cal` for the saved settings and for the changed ones.
     calibrations: [Vec<String>; 2],
 }
 
@@ -45,7 +45,7 @@ impl Saved {
         }
     }
 
-    /// Saves the other settings, and returns the EEPROM operations.
+    /// Saves the changed settings, and returns the EEPROM operations.
     fn save(&mut self) -> Vec<EepromOperation> {
         let before = self.bench.uno.eeprom_operations().len();
         assert_eq!(self.bench.say("save"), "ok save");
@@ -83,7 +83,7 @@ fn a_power_cut_at_any_byte_of_a_save_torn_in_any_way_leaves_the_old_or_the_new()
                     "{operation:?} torn to {torn:02x}: {outcome:?}"
                 );
                 found[usize::from(is_new)] += 1;
-                // Some of the cuts also in the running image.
+                // One cut in 97 is also loaded by the running image.
                 images += 1;
                 if images % 97 == 0 {
                     let calibration = saved.power_on_with(&contents);

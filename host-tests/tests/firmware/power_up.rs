@@ -37,7 +37,7 @@ fn a_timer_that_was_left_running_changes_no_edge() {
             let running = edges_after(&[(TCCR1B, clock)], fidelity);
             assert_eq!(running, cold, "TCCR1B = {clock}");
         }
-        // As an 8-bit fast PWM, which takes a new OCR1A at its top only.
+        // 8-bit fast PWM, in which the timer takes over a new OCR1A only at the end of its cycle.
         let pwm = edges_after(&[(TCCR1A, 1), (TCCR1B, 0x0a)], fidelity);
         assert_eq!(pwm, cold);
     });
@@ -45,8 +45,8 @@ fn a_timer_that_was_left_running_changes_no_edge() {
 
 #[test]
 fn the_timer_stands_still_while_it_is_set_up_and_starts_at_zero() {
-    // With every change of the mode the simulation starts to count again, while the
-    // chip goes on counting: so the test reads the registers.
+    // The simulation restarts the count at every change of the mode, but the chip goes on
+    // counting. So the test reads the registers.
     in_both(|fidelity| {
         let mut bench = FirmwareBench::power_on(fidelity);
         for (register, value) in [(TCCR1B, 1), (TCNT1 + 1, 0x12), (TCNT1, 0x34)] {
@@ -62,7 +62,7 @@ fn the_timer_stands_still_while_it_is_set_up_and_starts_at_zero() {
         );
         assert!(bench.uno.run_until(1_000, 1, |uno| uno.peek(TCCR1B) != 0));
         assert_eq!(word(&bench.uno, TCNT1), 0);
-        // Clear on compare with OCR1A, every cycle.
+        // Clear on compare with OCR1A, no prescaler.
         assert_eq!((bench.uno.peek(TCCR1A), bench.uno.peek(TCCR1B)), (0, 0x09));
     });
 }
@@ -94,7 +94,7 @@ fn pins_that_were_left_high_go_low_and_make_no_pulse() {
         }
         bench.run_ms(1);
         let [b, c, d] = PORTS.map(|port| bench.uno.peek(port));
-        // D0 and D1 are the serial line's.
+        // D0 and D1 belong to the serial line.
         assert_eq!([b, c, d & !0x03], [0; 3]);
         let rest: Vec<Edge> = left
             .iter()

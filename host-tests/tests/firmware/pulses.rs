@@ -7,7 +7,7 @@ use simulated_uno::{Edge, Fidelity, most_pins_high};
 
 use crate::{SECOND, Status, awake, end_flood, first_moving_gait, for_each, in_both};
 
-/// The servos' edges among those of the last frames.
+/// The edges of the servos' pins among the recorded edges.
 pub fn servo_edges(bench: &FirmwareBench) -> Vec<Edge> {
     let pins = bench.pins();
     let of_servo = |edge: &Edge| pins.contains(&edge.pin);
@@ -20,7 +20,7 @@ fn assert_in_step(bench: &FirmwareBench, frames: &[Frame]) {
     for frame in frames {
         for (servo, start) in frame.starts.into_iter().enumerate() {
             let start = start.unwrap_or_else(|| panic!("no pulse: {frame:?}"));
-            // A slot of 4 ms for each, counted from A1's.
+            // Each servo has a slot of 4 ms, counted from A1's.
             assert_eq!(start, frame.start + servo as u64 * FRAME / 5, "{frame:?}");
         }
     }
@@ -29,7 +29,7 @@ fn assert_in_step(bench: &FirmwareBench, frames: &[Frame]) {
     assert_eq!(most_pins_high(&edges), 1);
 }
 
-/// A1's first pulse since power-on, on a bench that has not run for frames yet.
+/// The cycle of A1's first pulse since power-on, on a bench that has not run for frames yet.
 pub fn first_pulse(bench: &FirmwareBench) -> u64 {
     let edges = servo_edges(bench);
     edges.first().expect("the robot stands").cycle
@@ -59,8 +59,8 @@ pub fn commanded_widths(
 fn every_width_is_the_one_that_was_asked_for() {
     for_each(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
         for gait in robot().gaits() {
-            // The line is sent while the firmware writes nothing; and once more, later, if it ended so
-            // shortly before a tick that main may have read it before the tick or after it.
+            // The line is sent while the firmware writes nothing. If it ends so shortly before a tick that
+            // main may have read it before or after the tick, a new bench tries again, a millisecond later.
             let asked_after = |ms| {
                 let mut bench = awake(*fidelity);
                 let first = first_pulse(&bench);

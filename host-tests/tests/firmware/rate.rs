@@ -7,8 +7,8 @@ use simulated_uno::{CYCLES_PER_MS, Fidelity};
 use crate::pulses::servo_edges;
 use crate::{Status, awake, first_moving_gait, in_both, robot_after};
 
-/// The rates, baud, each with the number of `status` lines until one is answered from a cold start:
-/// one for each rate before it, and one whose end the robot does not trust.
+/// The rates, baud, each with the number of `status` lines that are sent from a cold start until one is
+/// answered. One is lost at each rate tried before, and one more because the robot does not trust its end.
 const RATES: [(f64, u32); 4] = [(115_200.0, 1), (57_600.0, 3), (38_400.0, 4), (9_600.0, 5)];
 
 /// Asks until there is an answer; returns the number of lines sent.
@@ -27,7 +27,7 @@ pub fn ask_until_answered(bench: &mut FirmwareBench) -> u32 {
     panic!("no answer at any rate");
 }
 
-/// A robot that was found at this rate.
+/// A robot that has found this rate.
 fn robot_at(baud: f64) -> FirmwareBench {
     let mut bench = awake(Fidelity::DataSheet);
     bench.uno.set_baud(baud);
@@ -38,7 +38,7 @@ fn robot_at(baud: f64) -> FirmwareBench {
 
 #[test]
 fn a_robot_answers_at_each_rate_after_a_few_lines_and_then_to_each() {
-    // Stock simavr passes every byte on, whatever its rate.
+    // Only the simulation by the data sheet: stock simavr passes on every byte, whatever its rate.
     for (baud, lines) in RATES {
         // Slow and fast senders.
         for error in [0.985, 1.0, 1.02] {
@@ -126,7 +126,7 @@ fn no_pulse_moves_by_a_cycle_while_the_rate_is_sought() {
             let mut rates = std::collections::BTreeSet::new();
             for _ in 0..120 {
                 if is_sought {
-                    // Never the chip's rate, at which the robot would obey.
+                    // 4800 baud is never the chip's rate, at which the robot would obey the bytes.
                     bench.uno.set_baud(4_800.0);
                     let line: Vec<u8> = (0..rng.usize(1..30)).map(|_| rng.u8(..)).collect();
                     bench.uno.send(&line);

@@ -1,9 +1,9 @@
 //! The pulses of every robot of robots/, cycle for cycle, are those that were recorded.
 //!
-//! Each robot has one recorded number: a digest of every edge of its servos' pins in some simulated
+//! Each robot has one recorded number: a digest of every edge of its servos' pins in ten simulated
 //! minutes of random commands. A pulse that is one cycle longer, later or elsewhere gives another
-//! number. So does every change of a robot's numbers or of what a command does: then the pulses are
-//! meant to be others, and the numbers here are replaced by those that the failed test prints.
+//! number. So does an intended change of a robot's values or of the effect of a command: then the
+//! numbers here are replaced with those that the failed test prints.
 
 use lizard_host::firmware::with_robot;
 use lizard_host::sim::frame::{FRAME, servo_pins};
@@ -75,14 +75,14 @@ fn command(random: &mut Random, robot: &Robot) -> String {
     }
 }
 
-/// False for a robot too large for the space beside code that avr-gcc alone has linked.
+/// True unless the robot is too large for the space beside code that avr-gcc alone has linked.
 fn has_room(name: &str) -> bool {
     let is_plain = option_env!("LIZARD_PLAIN_LINK") == Some("1");
     let robot = Robot::load(root().join(format!("robots/{name}.toml")));
     !(is_plain && robot.is_err_and(|error| error.to_string().contains("bytes")))
 }
 
-/// A digest of all servo edges in ten minutes, and how many edges there were.
+/// A digest of all servo edges in ten minutes, and the number of edges.
 fn digest(name: &str) -> (u64, u64) {
     let frames = 600 * SECOND;
     let robot = Robot::load(root().join(format!("robots/{name}.toml")));
@@ -115,8 +115,8 @@ fn digest(name: &str) -> (u64, u64) {
     for frame in 0..frames {
         let start = first + frame * FRAME;
         if frame == next {
-            // A tick comes 4 ms before A1's slot. Every line has ended and been obeyed
-            // when the next one comes.
+            // The line is not sent near a tick, which comes 4 ms before A1's slot, and it has been
+            // obeyed before the next one is sent.
             uno.run_until_cycle(start + random.random_below(8) * CYCLES_PER_MS);
             uno.send(command(&mut random, &robot).as_bytes());
             uno.send(b"\n");
@@ -152,11 +152,11 @@ fn digest(name: &str) -> (u64, u64) {
 
 #[test]
 fn ten_minutes_of_random_commands_give_every_robot_its_recorded_pulses() {
-    // Recorded when waveforms had 64 samples for the first time (commit d99bebe), which changed
-    // widths and nothing else: there are as many edges as on the last firmware that had each robot
-    // compiled into it (commit e49c5b5). The large robot is the paper's, four thirds as large: its
-    // servos do the same. The robot with a grain was recorded when its file came.
-    // Recorded again when only a command counted for `deadman`, which ends some gaits earlier.
+    // Recorded when waveforms first had 64 samples (commit d99bebe), which changed only widths:
+    // there are as many edges as on the last firmware that had each robot compiled into it
+    // (commit e49c5b5). The large robot is the paper's, four thirds as large: its servos do the
+    // same. The robot with a grain was recorded when its file was added.
+    // Recorded again when `deadman` began to count only commands, which ends some gaits earlier.
     let recorded = [
         ("grain", (0xa932_205f_0ec5_bed7, 187_804)),
         ("large", (0x3a1b_1df5_bc67_f514, 184_384)),

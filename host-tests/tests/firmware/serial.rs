@@ -62,8 +62,8 @@ fn a_long_answer_comes_as_fast_as_the_line_carries_it() {
         wait_for(&mut bench, "help");
         let bytes = &bench.bytes()[before..];
         let duration = bytes[bytes.len() - 1].cycle - bytes[0].cycle;
-        // A byte takes 1360 cycles, in stock simavr 1496. Some frames, and the composing of each
-        // line, add to that.
+        // A byte takes 1360 cycles, in stock simavr 1496. Frames, and the time to compose each line,
+        // add to that.
         let rate = duration / bytes.len() as u64;
         assert!(bytes.len() > 200 && rate < 2_000, "{rate} cycles a byte");
     });
@@ -97,8 +97,8 @@ fn bytes_lost_in_a_flood_are_counted() {
 
 #[test]
 fn a_burst_that_overruns_the_buffer_is_counted_to_the_byte() {
-    // While the answer to `help` fills the line back, main takes nothing; 64 bytes
-    // fit and the rest is lost.
+    // While the answer to `help` is being sent, main reads nothing: 64 bytes fit into the
+    // buffer and the rest is lost.
     in_both(|fidelity| {
         let mut bench = awake(fidelity);
         bench.uno.send(b"help\n");
@@ -128,7 +128,7 @@ fn of_an_overrun_the_bytes_that_are_kept_come_once_and_in_their_order() {
         bench.run_ms(3);
         let answer = bench.say("");
         let digits = answer.strip_prefix("ok watch ").expect(&answer);
-        // Whether the first byte is still taken depends on where main keeps interrupts off.
+        // Whether the first byte is still received depends on where main disables interrupts.
         let lost = bench.uno.overruns() > overruns;
         assert_eq!(digits.len() < 5, lost, "{n}: {answer}");
         overrun += usize::from(lost);
@@ -151,7 +151,7 @@ fn any_bytes_at_all_get_at_most_one_answer_for_a_line() {
     let mut rng = Rng::with_seed(11);
     let mut bench = awake(Fidelity::DataSheet);
     for _ in 0..300 {
-        // No backspace or delete: they take bytes back.
+        // Without backspace and delete, which remove bytes from the line.
         let bytes: Vec<u8> = (0..rng.u64(..80))
             .map(|_| rng.u8(..).max(32))
             .filter(|byte| *byte != 0x7f)

@@ -15,7 +15,7 @@ use crate::{Status, awake, for_each, gaits, in_both, robot_after};
 /// was dark in the first.
 const HAND_OVER: u64 = 608;
 
-/// Runs main into its next frame and to the return of the function that computes it.
+/// Runs until main has computed its next frame, to the return of `Control::frame`.
 fn run_to_hand_over(bench: &mut FirmwareBench) {
     let frame = bench.uno.image().function("Control::frame");
     let entry = frame.expect("it computes a frame").address as u32;
@@ -98,7 +98,7 @@ fn a_rest_instead_of_a_waiting_frame_ends_all_pulses_or_none() {
 
 #[test]
 fn an_answer_is_the_same_wherever_main_stops_in_writing_it() {
-    // The time of two bytes, in which the line sends all that it was given.
+    // The time of two bytes, in which the USART sends everything it holds.
     const STOP: u64 = 3_000;
     in_both(|fidelity| {
         let mut bench = awake(fidelity);
@@ -131,7 +131,7 @@ fn a_byte_at_any_cycle_of_falling_asleep_wakes_main_at_once() {
             walk.run_to(rise - 20_000);
             walk.bench.uno.send(b"stop");
             let bytes_before = walk.bench.bytes().len();
-            // The receiver has a byte 9.5 bits after the byte's start.
+            // The receiver delivers a byte 9.5 bit times after its start.
             let comes = rise - 200 + n;
             walk.run_to(comes - 1_320);
             walk.bench.uno.send(b"\n");
@@ -150,7 +150,7 @@ fn ticks_that_main_misses_are_left_out_and_no_servo_leaps_for_them() {
         let before = Status::of(&mut walk.bench).number("frames");
         let cycle = walk.bench.uno.cycle();
         walk.bench.uno.take_edges();
-        // Shorter than the watchdog's time.
+        // Shorter than the watchdog's timeout.
         for _ in 0..20 {
             walk.bench.uno.stall_main(5 * FRAME);
             walk.bench.run_ms(300);

@@ -12,7 +12,7 @@ use lizard_core::numbers::units::CYCLES_PER_US;
 use lizard_core::virtual_board::Running;
 use lizard_host_tests::{FirmwareBench, robot};
 
-/// Time after which simavr is ended. It sleeps while the chip does, and a busy machine is slower.
+/// Time until simavr is ended. Simavr sleeps while the chip does, and a busy machine is slower.
 const TIMEOUT: Duration = Duration::from_secs(200);
 
 /// The gait that the robot walks: the first after `stand`.
@@ -131,7 +131,7 @@ fn the_elf_file_walks_in_debians_simavr() {
     let folder = folder.path();
     write_eeprom(folder);
     fs::copy(FirmwareBench::elf(), folder.join("lizard.elf")).expect("the firmware");
-    // The same file with four pins to be traced in addition to what it asks for.
+    // The same file, with trace tags for four pins added to its own tags.
     objcopy(
         &[
             "-O",
@@ -204,8 +204,8 @@ fn the_elf_file_walks_in_debians_simavr() {
     }
 }
 
-/// A HEX file cannot tell simavr the voltage, and it takes 3.3 V: too little for servos, which
-/// the firmware says.
+/// A HEX file cannot tell simavr the supply voltage, so simavr assumes 3.3 V. That is too little for
+/// servos, and the firmware must say so.
 #[test]
 fn the_hex_files_start_in_debians_simavr_and_report_its_low_voltage() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -10,8 +10,8 @@ use crate::{
     widths,
 };
 
-/// Cycles between interruptions of a gait: no fraction of a frame, so that many phases of gait and
-/// frame are covered.
+/// Cycles between the interruptions of a gait. Not a multiple of a frame, so that many phases of
+/// gait and frame are covered.
 const APART: u64 = 1_237_331;
 
 /// Sends a line at cycle `cycle` after a second of `gait`, and returns the bench and
@@ -53,7 +53,7 @@ fn rest_ends_the_pulses_within_two_frames_and_cuts_none_short() {
         let mut bench = robot_after(&first_moving_gait(), fidelity);
         bench.uno.run_cycles(at);
         let first = bench.run_for_frames(1)[0];
-        // The frame before is still in `edges`; those from now on come after it.
+        // `edges` still holds this frame; the frames from now on follow it.
         bench.uno.run_cycles(at % FRAME);
         bench.send("rest");
         bench.run_ms(100);
@@ -67,7 +67,7 @@ fn rest_ends_the_pulses_within_two_frames_and_cuts_none_short() {
                 .count();
             assert_eq!(pulses.len(), ups, "A{} is left high", servo + 1);
             for pulse in &pulses {
-                // Whole pulses, within the servo's travel.
+                // Complete pulses, within the servo's travel.
                 let us = pulse.width as f64 / CYCLES_PER_US as f64;
                 let Servo { min_us, max_us, .. } = robot().servos()[servo];
                 assert!(min_us - 1.0 <= us && us <= max_us + 1.0, "{us} us at {at}");
@@ -159,7 +159,7 @@ fn a_pose_is_reached_by_all_servos_together_and_not_too_fast() {
         let goal: [u64; 4] = std::array::from_fn(|i| width_at(i, sweeps(size)[i]));
         let end = sent[149];
         for (end, goal) in end.into_iter().zip(goal) {
-            // Hundredths of a degree, then steps of 1/65536 turn: a cycle or two each.
+            // Rounding to hundredths of a degree, then to steps of 1/65536 turn: a cycle or two each.
             assert!(end.abs_diff(goal) <= 4, "{end}, not {goal}");
         }
         // Along a straight line: each servo has covered the same share of its distance.

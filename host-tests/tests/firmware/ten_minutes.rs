@@ -94,8 +94,8 @@ fn ten_minutes_of_commands_give_the_same_widths_and_words_on_the_avr_and_here() 
         for (n, (measured, command)) in log.widths.iter().zip(&commands.widths).enumerate() {
             assert_eq!(measured, command, "{fidelity:?}, frame {n}");
         }
-        // Which frame a report is from also depends on the cycle in which the line
-        // gets room.
+        // The frame that a report describes also depends on the cycle in which the serial line
+        // has room for it.
         let is_report = |line: &str| line.starts_with("# t=");
         let here = commands.written.lines().filter(|line| !is_report(line));
         let here: Vec<&str> = here.collect();

@@ -24,7 +24,7 @@ impl Walk {
         Self::robot_after(&first_moving_gait(), fidelity)
     }
 
-    /// Lets the robot stand in its neutral pose.
+    /// Makes the robot stand in its neutral pose and runs it for a second.
     pub fn stand(fidelity: Fidelity) -> Self {
         Self::robot_after("stand", fidelity)
     }
@@ -43,8 +43,8 @@ impl Walk {
         }
     }
 
-    /// Runs to just before the next frame's first pulse and returns the cycle of that
-    /// one. Edges so far are dropped.
+    /// Runs to just before the next frame's first pulse and returns the cycle of that pulse.
+    /// Discards the edges so far.
     pub fn next_frame(&mut self) -> u64 {
         self.bench.run_for_frames(0);
         let since = self.bench.uno.cycle() - self.first;
@@ -87,13 +87,13 @@ impl Walk {
         address.unwrap_or_else(|| panic!("the firmware has no variable {variable}"))
     }
 
-    /// The value of one of its 16-bit variables.
+    /// The value of one of the firmware's 16-bit variables.
     pub fn word(&self, variable: &str) -> u16 {
         let address = self.address(variable);
         u16::from_le_bytes([0, 1].map(|n| self.bench.uno.peek(address + n)))
     }
 
-    /// Edges counted as late.
+    /// The number of edges that the firmware has counted as late.
     pub fn late(&self) -> u64 {
         self.word("pulses::LATE").into()
     }

@@ -15,7 +15,7 @@ const TIMSK1: u16 = 0x6f;
 /// in which it was fed last.
 const TIMEOUT_MS: u64 = 250 + 20;
 
-/// A robot that is held in a pose apart from the neutral one, and its widths.
+/// A robot that holds a pose other than the neutral one, and its widths.
 fn hold_pose() -> (FirmwareBench, [u64; 4]) {
     let mut bench = awake(Fidelity::DataSheet);
     bench.say(&pose_at([5.0, -4.0, 3.0, -2.0]));
@@ -44,7 +44,7 @@ fn run_until_reset(bench: &mut FirmwareBench) -> u64 {
 fn a_main_that_hangs_is_reset_and_the_robot_held_without_a_wrong_pulse() {
     let (mut bench, widths) = hold_pose();
     for n in 0..40u64 {
-        // At any time in a frame.
+        // At another time in the frame in each round.
         bench.uno.run_cycles(n * 7_919);
         bench.uno.take_edges();
         bench.uno.stall_main(2_000 * MS);
@@ -149,7 +149,7 @@ fn a_robot_that_works_is_never_reset() {
     assert_eq!(bench.uno.reset_events().len(), 1);
 }
 
-/// A board that has just begun, with or without a boot loader.
+/// A board shortly after power-on, with or without a boot loader.
 fn fresh_board(has_boot_loader: bool) -> FirmwareBench {
     let mut bench = FirmwareBench::power_on(Fidelity::DataSheet);
     bench.uno.set_boot_loader(has_boot_loader);
@@ -176,7 +176,8 @@ fn every_cause_of_a_reset_is_reported_and_resets_are_counted() {
         bench.uno.set_supply_mv(2_400.0);
         bench.uno.run_ms(5);
         bench.uno.set_supply_mv(5_000.0);
-        // The boot loader clears the chip's record of the cause; the RAM was kept.
+        // The boot loader clears the chip's record of the cause, and the RAM has kept its
+        // contents, so the dip is taken for an external reset.
         let dip = if has_boot_loader {
             "external"
         } else {
@@ -240,7 +241,7 @@ fn robot_neutral() -> [f64; 4] {
 #[test]
 fn a_hang_that_ends_by_itself_is_reset_like_any_other() {
     let (mut bench, widths) = hold_pose();
-    // From shorter than the watchdog's first 125 ms to longer than both.
+    // From shorter than the watchdog's first stage of 125 ms to longer than both stages.
     for ms in (90..300).step_by(10) {
         let resets = bench.uno.resets();
         bench.uno.stall_main(ms * MS);
@@ -262,7 +263,7 @@ fn a_hang_that_ends_by_itself_is_reset_like_any_other() {
 
 #[test]
 fn a_resting_robot_that_hangs_restarts_without_a_pulse() {
-    // The pose of the rest is in the memory, or the memory holds nothing.
+    // The EEPROM holds the pose of the rest, or it is blank.
     for blank in [false, true] {
         for ms in [140, 200, 400] {
             let (mut bench, _) = hold_pose();

@@ -40,7 +40,7 @@ fn each_servo_has_the_neutral_the_gain_and_the_pin_that_the_file_gives_it() {
                 );
                 checked += 1;
             }
-            // Half the turn at least has pulses.
+            // At least half of the turn has pulses.
             assert!(
                 checked > 65_536 / 17 / 2,
                 "{name}: A{}: {checked} pulses",

@@ -17,24 +17,24 @@ use crate::truth::{Verdict, angles, is_safe, pose_within};
 /// Frames until all servos are awake.
 pub const WAKING: u32 = 20;
 
-/// A step of angle in a frame, as deg/s.
+/// The speed of one step of angle per frame, deg/s.
 pub const STEP_PER_FRAME: f64 = 50.0 * 360.0 / 65536.0;
 
 /// Number of frames in which a motion accelerates to its pace, or brakes.
 const ACCELERATION_FRAMES: f64 = 7.0;
 
-/// Largest error by rounding of a change of speed, in steps of angle per frame.
+/// Largest rounding error of a change of speed, in steps of angle per frame.
 const ROUNDING: f64 = 4.0;
 
 /// The largest change of a servo's speed from one frame to the next, deg/s, except
 /// for `stop`, `rest` and the guard, which stop it at once.
 ///
-/// A point-to-point move changes speed the most where its shortest, of eight frames,
-/// begins or ends: `6 distance / 8^2` a frame, with a mean pace of 2/3 of the slew limit.
-/// It is half the slew limit, also where one move ends and the next leads straight
-/// back. A gait has its own changes, and gathers or loses its pace on top of them.
+/// A point-to-point move changes speed most at the start and the end of the shortest move, of
+/// eight frames: by `6 distance / 8^2` per frame, at a mean speed of 2/3 of the slew limit. That
+/// is half the slew limit, also where one move ends and the next leads straight back. A gait has
+/// changes of speed of its own, and gaining or losing pace adds to them.
 ///
-/// It is computed once for each robot, by the hash of its numbers.
+/// The value is computed once for each robot and cached by the hash of the robot's numbers.
 pub fn jerk(robot: &Robot) -> f64 {
     static KNOWN: Mutex<BTreeMap<u32, f64>> = Mutex::new(BTreeMap::new());
     let mut known = KNOWN.lock().expect("no test fails in here");
@@ -75,8 +75,8 @@ fn fastest(robot: &Robot, id: GaitId) -> (f64, f64) {
     (speed * STEP_PER_FRAME, change * STEP_PER_FRAME)
 }
 
-/// Number of frames within which any command ends: waking, braking, the longest move
-/// at the slew limit, gathering pace.
+/// Number of frames within which any command ends: waking, braking, the longest move at the
+/// slew limit, gaining pace.
 pub fn settling_frames(robot: &Robot) -> u32 {
     let travels = robot.firmware().calibration();
     let ranges = travels.map(|servo| f64::from(servo.max.0) - f64::from(servo.min.0));
@@ -85,7 +85,7 @@ pub fn settling_frames(robot: &Robot) -> u32 {
     WAKING + 30 + (1.05 * frames) as u32
 }
 
-/// A robot each frame of which is checked when it is sent.
+/// A robot whose frames are each checked when they are sent.
 pub struct Walker<'a> {
     name: &'a str,
     robot: &'a Robot,
@@ -100,7 +100,7 @@ pub struct Walker<'a> {
 }
 
 impl<'a> Walker<'a> {
-    /// A robot at power-on, its banner read.
+    /// A robot after power-on, whose banner has been read.
     pub fn new(Named { name, robot }: &'a Named) -> Self {
         let mut walker = Self {
             name,
@@ -157,13 +157,13 @@ impl<'a> Walker<'a> {
         self.motion().hazard().is_none()
     }
 
-    /// The command for a pose. Hundredths of a degree name the angle of the nearest
-    /// step of 1/65536 turn, or its neighbour.
+    /// The command for a pose. Its hundredths of a degree select the pose's step of 1/65536 turn, or
+    /// the neighbour of that step.
     pub fn pose_command(&self, pose: &Pose) -> String {
         pose_command(angles(self.robot.firmware(), pose))
     }
 
-    /// Lets some frames pass.
+    /// Runs a number of frames.
     pub fn run(&mut self, frames: u32) {
         for _ in 0..frames {
             self.frame();
@@ -188,14 +188,14 @@ impl<'a> Walker<'a> {
         assert_ne!(Verdict::of(robot, at), Verdict::Unsafe, "{name}: {at:?}");
         self.check_pulses(&pose, pulses);
 
-        // Within a move the phase is 0; elsewhere a gait's is, once a cycle.
+        // During a move the phase is 0. In a gait it is 0 only once per cycle.
         let in_gait = motion.phase() != 0;
         let limit = if in_gait {
             robot.pace().gait_slew
         } else {
             robot.pace().slew
         };
-        // A table is rounded to a step at either end of a frame.
+        // The poses of a gait are rounded, which may add a step.
         let fastest = f64::from(before.farthest(&pose)) * STEP_PER_FRAME;
         let max = limit + if in_gait { STEP_PER_FRAME } else { 0.0 };
         assert!(
@@ -230,8 +230,8 @@ impl<'a> Walker<'a> {
             let sweep = f64::from(pose.0[n].0) * 360.0 / 65536.0;
             let expected = 16.0 * (servo.neutral_us + servo.us_per_degree * sweep);
             let error = f64::from(width.0) - expected;
-            // Neutral, gain and product are rounded to half a cycle each; half a
-            // step of the gain is a cycle at the ends of half a turn.
+            // Neutral and product are rounded to half a cycle each, and half a step of the gain
+            // is one cycle at a sweep of half a turn.
             assert!(
                 error.abs() <= 2.0,
                 "{}: A{} is {error} cycles off",

@@ -12,11 +12,11 @@ use lizard_robot::{CheckedGait, Robot, STEPS_PER_DEGREE, Waveform};
 use crate::frames::gait_command;
 use crate::truth::is_safe;
 
-/// Phases that the tables tell apart.
+/// The number of phases that the wave tables distinguish.
 const PHASES: u32 = 65_536;
-/// A gait's own pace, in 1/1024.
+/// The pace of a gait at full speed, in 1/1024.
 pub const FULL_PACE: u16 = 1024;
-/// The largest error of a table, deg: the project's promise.
+/// The largest error of a table that the project promises, deg.
 const TABLE_ERROR: f64 = 0.50;
 
 /// Every gait of every robot, with its place in the core.
@@ -35,12 +35,12 @@ fn gait_named(robot: &Robot, name: &str) -> Option<Gait> {
     Some(robot.firmware().gait(id))
 }
 
-/// Phases of the core, one for each that the tables tell apart.
+/// One phase of the core for each that the tables distinguish.
 fn phases() -> impl Iterator<Item = u32> {
     (0..PHASES).map(|phase| phase << 8)
 }
 
-/// The pose in the mirror: left and right exchanged, turns the other way.
+/// The mirrored pose: left and right exchanged, every sweep negated.
 fn mirror(pose: Pose) -> Pose {
     Pose(OPPOSITE.map(|servo| Sweep(-pose.0[servo].0)))
 }
@@ -61,7 +61,7 @@ fn the_core_has_the_gaits_of_the_file_in_its_order() {
 fn tables_are_within_the_promised_error_of_every_gait_and_safe_at_every_phase() {
     let mut worst = 0.0f64;
     for (n, (Named { name, robot }, float, gait)) in gaits().enumerate() {
-        // Of random robots every 13th phase, another one for each gait.
+        // For random robots only every 13th phase, with another first phase for each gait.
         let (first, step) = if name.contains("random") {
             (n % 13, 13)
         } else {
@@ -107,14 +107,14 @@ fn a_leg_of_a_wave_pushes_back_for_its_duty_and_returns_in_the_rest() {
                 continue;
             }
             legs += 1;
-            // The foot's place, forward positive, at a share of the cycle after its start.
+            // The leg's angle, forward positive, at a share of the cycle after the stroke's start.
             let foot = |after: f64| {
                 let phase = (stride.start + after).rem_euclid(1.0) * f64::from(CYCLE);
                 let pose = gait.pose(robot.firmware().waves(), phase as u32);
                 FORWARD[servo] * f64::from(pose.0[servo].0) / STEPS_PER_DEGREE
             };
             let whom = format!("{name}: {} {}", float.name(), LEGS[servo]);
-            // A stroke starts in front, goes in a straight line to as far behind, and returns.
+            // A stroke starts in front, moves at constant speed to as far behind, and returns.
             let front = foot(0.0);
             let share = front / stride.amplitude;
             assert!((0.5..1.01).contains(&share), "{whom} begins at {front} deg");
@@ -153,7 +153,7 @@ fn the_legs_of_a_held_gait_return_one_after_another_in_its_order() {
                 let pose = gait.pose(robot.firmware().waves(), (phase * f64::from(CYCLE)) as u32);
                 FORWARD[servo] * f64::from(pose.0[servo].0) / STEPS_PER_DEGREE
             };
-            // A fifth of the cycle for the common stroke, then one for each return.
+            // A fifth of the cycle is the common stroke, then each leg's return takes a fifth.
             let start = 0.2 * (1.0 + turn as f64);
             for (phase, share) in [
                 (0.2, -1.0),
@@ -175,7 +175,7 @@ fn the_legs_of_a_held_gait_return_one_after_another_in_its_order() {
 
 #[test]
 fn a_path_moves_only_its_own_end_around_its_centre() {
-    // Random robots look and wag around where the end point stands in neutral.
+    // Random robots look and wag around the position of the end point in the neutral pose.
     let mut paths = 0;
     for Named { name, robot } in robots()
         .iter()
@@ -265,7 +265,7 @@ fn a_mirrored_gait_is_the_other_one_with_left_and_right_exchanged() {
             assert_eq!(one.increment, other.increment, "{name}");
             for phase in phases() {
                 let pose = mirror(one.pose(robot.firmware().waves(), phase));
-                // Halves are rounded up on either side, gains are rounded.
+                // Halves are rounded up for either sign, and gains are rounded.
                 let deviation = pose.farthest(&other.pose(robot.firmware().waves(), phase));
                 assert!(deviation <= 1, "{name}: {deviation} steps");
             }

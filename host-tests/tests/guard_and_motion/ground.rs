@@ -15,9 +15,9 @@ fn angles(robot: &Robot, pulses: Pulses) -> [f64; 4] {
     })
 }
 
-/// The travel of one cycle, by the pulses that the core sends for a gait at a speed in
-/// percent. It begins where the gait's phase is next to 0. `None` where the guard bars
-/// the way to the gait's first pose.
+/// The travel of one cycle, computed from the pulses that the core sends for a gait at a speed in
+/// percent. The cycle begins where the gait's phase is nearest to 0. `None` if the guard stops the
+/// robot on its path to the gait's first pose.
 fn travel(named: &Named, gait: &CheckedGait, percent: f64) -> Option<Travel> {
     let robot = &named.robot;
     let mut walker = Walker::standing(named);
@@ -52,8 +52,8 @@ fn travel(named: &Named, gait: &CheckedGait, percent: f64) -> Option<Travel> {
     Some(robot.travel(path))
 }
 
-/// Compares a travel with the expected one, where that is known, within `largest` mm or a hundredth
-/// of it.
+/// Asserts that a travel is the expected one where that is known: forward to within `largest` mm or a
+/// hundredth, the turn to within 0.2 deg.
 fn check(name: &str, travel: Travel, largest: f64, forward: Option<f64>, turn: Option<f64>) {
     println!(
         "{name}: {:+.2} mm, {:+.2} deg, expected {forward:?} {turn:?}",
@@ -81,7 +81,7 @@ fn the_pulses_of_every_gait_lead_as_far_as_the_gait_in_floating_point() {
     for named in &robots()[..robots().len() - 5] {
         for gait in named.robot.gaits() {
             for percent in [100.0, 20.0] {
-                // One robot suffices for the lower pace.
+                // The robots that are not random suffice for the lower pace.
                 if percent < 100.0 && named.name.starts_with("random") {
                     continue;
                 }
@@ -91,7 +91,7 @@ fn the_pulses_of_every_gait_lead_as_far_as_the_gait_in_floating_point() {
                 seen += 1;
                 let expected = gait.predict(&named.robot.ground().rigid());
                 let name = format!("{}: {} at {percent} %", named.name, gait.name());
-                // Without symmetry, which foot holds may depend on a tenth of a degree.
+                // Without symmetry, a tenth of a degree may decide which foot holds.
                 let max = 0.01 * named.robot.lizard().links.l10;
                 check(&name, travel, max, expected.forward, expected.turn);
             }

@@ -19,12 +19,12 @@ fn limits(robot: &Robot) -> [f64; 10] {
     })
 }
 
-/// The least Q15 number that is not below a sine.
+/// The smallest Q15 number that is not below a sine.
 fn least(limit: f64) -> i16 {
     (limit * 32768.0 - 1e-6).ceil() as i16
 }
 
-/// A pose at exactly every limit of its margins, its sliders at their longest.
+/// A clearance exactly at the limit of every margin, with both sliders at their maximum length.
 fn at_the_limit(robot: &Robot) -> Clearance {
     Clearance {
         margins: limits(robot).map(|limit| Sine(least(limit))),

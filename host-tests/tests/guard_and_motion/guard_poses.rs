@@ -1,4 +1,4 @@
-//! The guard's decision on whole poses, anywhere in the servos' travel.
+//! The guard's decisions on poses anywhere in the servos' travel.
 
 use fastrand::Rng;
 use lizard_core::guard::clearance::Clearance;
@@ -57,7 +57,7 @@ impl Findings {
         let truth = match Truth::of(robot, angles(firmware, pose)) {
             Ok(truth) => truth,
             Err(fault) => {
-                // A head that does not close is detected first.
+                // The guard checks the head first, so it may name an earlier condition.
                 let end =
                     open_end(&fault).expect("the sliders of these robots always have a length");
                 assert!(
@@ -97,7 +97,7 @@ impl Findings {
             if let Some(end) = end
                 && (truth.margins[end] < MIN_TYPE2 || truth.is_at_crossing(end))
             {
-                // The guard only has to detect that case.
+                // Here the guard only has to detect the small type-2 margin.
                 let max = MIN_TYPE2 + truth.bands[end];
                 assert!(
                     truth.is_at_crossing(end) || sine(core.margins[end]) < max,
@@ -154,7 +154,7 @@ impl Findings {
     }
 }
 
-/// The place of the condition that a hazard names, among twelve.
+/// The index of the condition that a hazard names, among the twelve.
 fn index_of(hazard: Hazard) -> usize {
     match hazard {
         Hazard::Margin { margin, .. } => {
@@ -166,7 +166,7 @@ fn index_of(hazard: Hazard) -> usize {
     }
 }
 
-/// Poses in all of the travel, and nearer to neutral, where safe turns to unsafe.
+/// Random poses in the full travel, and nearer to neutral, where safe poses border on unsafe ones.
 fn poses(rng: &mut Rng, robot: &Robot) -> impl Iterator<Item = Pose> {
     let calibration = robot.firmware().calibration();
     let shares = [1.0, 0.7, 0.4, 0.2];
@@ -208,7 +208,7 @@ fn of_every_robot_the_guards_decision_changes_at_the_limit_of_floating_point() {
     }
 }
 
-/// Two neighbours on the way from neutral to an unsafe pose, the first of them safe
+/// Two neighbouring poses on the path from neutral to an unsafe pose, the first of them safe
 /// and the second not.
 fn straddling_poses(robot: &Robot, far: Pose) -> [Pose; 2] {
     let at = |share: u32| {

@@ -1,8 +1,8 @@
 //! The core's guard, gaits and motion with any robot, run on this machine and compared with
 //! floating point: the robot under test, every file of robots/ and random robots without symmetry.
 //!
-//! `truth` computes the truth without the core; `frames` drives a robot through its
-//! console and checks every frame that comes.
+//! `truth` computes the expected values without the core; `frames` drives a robot through its
+//! console and checks every frame that it sends.
 
 mod calibration;
 mod frames;

@@ -114,7 +114,7 @@ fn in_a_move_all_servos_do_the_same_share_of_their_ways_and_arrive_together() {
             let goal = safe_pose(&mut rng, named.robot.firmware());
             let mut walker = Walker::standing(named);
             if !walker.say(&walker.pose_command(&goal)).starts_with("ok") {
-                continue; // a hundredth of a degree beyond a limit
+                continue; // rounding to a hundredth of a degree put it beyond a limit
             }
             let mut poses = vec![walker.pose()];
             while walker.motion().activity() == Activity::Pose && poses.len() < 1000 {

@@ -66,7 +66,7 @@ fn the_last_safe_pose_is_held_and_the_reason_is_reported_once() {
         let Named { name, robot } = named;
         for [from, to] in crossings(&mut rng(7000 + n as u64), robot) {
             let mut walker = Walker::standing(named);
-            // A hundredth of a degree may be beyond the limit.
+            // Rounding to a hundredth of a degree may put the command beyond the limit.
             if !walker.say(&walker.pose_command(&from)).starts_with("ok") {
                 continue;
             }
@@ -77,7 +77,7 @@ fn the_last_safe_pose_is_held_and_the_reason_is_reported_once() {
                 continue;
             }
             let from = walker.pose();
-            walker.run(settling_frames(robot)); // which checks that every frame is safe
+            walker.run(settling_frames(robot)); // checks that every frame is safe
             // A step of a fast move may leap over a narrow hazard.
             let Some(hazard) = walker.motion().hazard() else {
                 assert!(walker.pose().farthest(&to) <= 1, "{name}");
@@ -101,7 +101,7 @@ fn the_last_safe_pose_is_held_and_the_reason_is_reported_once() {
             assert_eq!(walker.pose(), pose, "{name}");
             assert!(walker.read().is_empty(), "{name}: told once");
             assert!(walker.say("status").contains(" guard=held "), "{name}");
-            // From there it can go back.
+            // From there the robot can move back, unless the guard stops it again.
             assert!(
                 walker.move_to(&from) || walker.motion().hazard().is_some(),
                 "{name}"

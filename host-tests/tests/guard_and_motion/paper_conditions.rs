@@ -15,7 +15,7 @@ use crate::truth::{angles, is_safe};
 /// the couplers fold and the head swings free.
 const MEET: [f64; 2] = [70.52878, 109.47122];
 
-/// A guard on the printed conditions.
+/// A guard built on the printed conditions.
 struct Printed {
     /// |sin(theta2 + theta3)|.
     head: f64,

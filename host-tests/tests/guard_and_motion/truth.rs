@@ -1,5 +1,5 @@
-//! The truth, in floating point and without the core: every condition of a
-//! safe pose from lizard-kinematics, at exactly the angles that the core means.
+//! Expected values in floating point, without the core: every condition of a safe pose, computed
+//! by lizard-kinematics at exactly the angles that the core represents.
 
 use std::fmt;
 
@@ -17,8 +17,8 @@ use lizard_robot::{CoreRobot, Robot};
 /// Largest error of the guard's arithmetic in a margin, a sine; the rounding of lengths adds to
 /// it.
 pub const MARGIN_BAND: f64 = 0.002;
-/// The least type-2 limit that robot.toml may set; below it the guard only has to
-/// know that it is below.
+/// The smallest type-2 limit that robot.toml may set. Of a smaller margin the guard only has to
+/// detect that it is smaller.
 pub const MIN_TYPE2: f64 = 0.1;
 
 /// The ten margins in the order in which the guard checks them.
@@ -35,7 +35,7 @@ pub const MARGINS: [Margin; 10] = [
     Margin::Leg(Servo::A4),
 ];
 
-/// The end that each of the ten margins belongs to, legs aside.
+/// The end of each of the six margins that are not a leg's: 0 is the head, 1 the tail.
 pub const ENDS: [usize; 6] = [0, 1, 0, 0, 1, 1];
 
 /// An angle of the core in degrees, 0..360.
@@ -48,17 +48,17 @@ pub fn sine(margin: Sine) -> f64 {
     f64::from(margin.0) / 32768.0
 }
 
-/// Steps in a millimetre.
+/// Steps of a length per millimetre.
 pub fn per_mm(scale: Scale) -> f64 {
     f64::from(1u32 << scale.bits)
 }
 
-/// The chassis angles of a pose in degrees, exactly what the core means by it.
+/// The chassis angles of a pose in degrees, exactly as the core represents them.
 pub fn angles(firmware: &CoreRobot, pose: &Pose) -> [f64; 4] {
     pose.angles(&firmware.neutral()).map(degrees)
 }
 
-/// Every condition of a pose.
+/// The exact values of every safety condition at a pose.
 #[derive(Clone, Copy, Debug)]
 pub struct Truth {
     /// Sines, in the order of [`MARGINS`]. Type-2 with the sign of K2: negative for
@@ -68,16 +68,16 @@ pub struct Truth {
     pub travels: [f64; 2],
     /// K2 of head and tail, mm.
     pub across: [f64; 2],
-    /// The conditions that kinematics says are broken, crossed crank tips under
-    /// type-2.
+    /// True for each condition that is broken according to lizard-kinematics. Crossed crank tips
+    /// count as type-2.
     pub broken: [bool; 12],
     limits: Limits,
-    /// The guard's largest errors: of each margin; then in mm of the strokes, left
-    /// and right, and of K2 of head and tail.
+    /// The guard's largest errors: of each margin, then in mm of the left and the right stroke and
+    /// of K2 of head and tail.
     pub bands: [f64; 14],
 }
 
-/// The verdict on a pose. Near a limit, within the band, there is none.
+/// The verdict on a pose, undecided within the error band of a limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// Clear of every limit by more than the band.
@@ -89,7 +89,7 @@ pub enum Verdict {
 }
 
 impl Truth {
-    /// At chassis angles in degrees.
+    /// Computes every condition at chassis angles in degrees.
     ///
     /// # Errors
     /// Fails for a loop that does not close.
@@ -138,8 +138,8 @@ impl Truth {
         })
     }
 
-    /// The distance of each margin and then each stroke from its limit, positive where safe,
-    /// in bands. Crossed crank tips fail type-2, as the guard has it.
+    /// The distance of each margin and then each stroke from its limit, in bands, positive where
+    /// safe. As in the guard, crossed crank tips fail type-2.
     pub fn clear_by(&self) -> [f64; 12] {
         let Limits {
             type2,
@@ -168,7 +168,7 @@ impl Truth {
     }
 }
 
-/// The place of a condition among twelve: margins, strokes.
+/// The index of a condition among the twelve: ten margins, two strokes.
 fn index_of(check: Check) -> usize {
     let among = |checks: &[Check]| checks.iter().position(|known| *known == check);
     let kinds: [(usize, &[Check]); 5] = [
@@ -184,10 +184,9 @@ fn index_of(check: Check) -> usize {
     indices.next().expect("every condition is of one kind")
 }
 
-/// The largest errors of an end's margins: type-2, type-1 left and right. Besides the
-/// guard's arithmetic it is the rounding of lengths, `step` mm of the distance `tips`
-/// of the crank tips (mm): next to a singularity (`type2` is small) that turns the
-/// couplers a lot.
+/// The largest errors of an end's margins: type-2, type-1 left and right. Each is the error of the
+/// guard's arithmetic and of the rounding of lengths: `step` mm of the distance `tips` of the crank
+/// tips, mm. Near a singularity, where `type2` is small, such a step turns the couplers a lot.
 fn couplers(robot: &Robot, end: End, tips: f64, type2: f64, step: f64) -> [f64; 3] {
     let bars = robot.lizard().end(match end {
         End::Head => lizard_kinematics::End::Head,
@@ -199,7 +198,7 @@ fn couplers(robot: &Robot, end: End, tips: f64, type2: f64, step: f64) -> [f64; 
 }
 
 impl Verdict {
-    /// Of a whole pose, at chassis angles in degrees.
+    /// Judges the pose at chassis angles in degrees.
     pub fn of(robot: &Robot, angles: [f64; 4]) -> Self {
         let Ok(truth) = Truth::of(robot, angles) else {
             return Self::Unsafe;
@@ -215,7 +214,7 @@ impl Verdict {
     }
 }
 
-/// The end whose loop does not close.
+/// The index of the end whose loop does not close; `None` for a side.
 pub fn open_end(fault: &Infeasible) -> Option<usize> {
     match fault.part {
         Part::End(lizard_kinematics::End::Head) => Some(0),
@@ -247,12 +246,12 @@ impl fmt::Display for Spread {
     }
 }
 
-/// A pose anywhere in the servos' travel.
+/// A random pose anywhere in the servos' travel.
 pub fn any_pose(rng: &mut Rng, calibration: &[Calibration; 4]) -> Pose {
     Pose(calibration.map(|servo| Sweep(rng.i16(servo.min.0..=servo.max.0))))
 }
 
-/// A pose within a share of every servo's travel from neutral.
+/// A random pose within a share of every servo's travel from neutral.
 pub fn pose_within(rng: &mut Rng, calibration: &[Calibration; 4], share: f64) -> Pose {
     let pose = any_pose(rng, calibration);
     Pose(
@@ -261,7 +260,7 @@ pub fn pose_within(rng: &mut Rng, calibration: &[Calibration; 4], share: f64) ->
     )
 }
 
-/// A pose that the guard lets pass.
+/// A random pose that the guard accepts.
 pub fn safe_pose(rng: &mut Rng, firmware: &CoreRobot) -> Pose {
     let calibration = firmware.calibration();
     (0..1_000_000)
@@ -270,7 +269,7 @@ pub fn safe_pose(rng: &mut Rng, firmware: &CoreRobot) -> Pose {
         .expect("poses near neutral are safe")
 }
 
-/// The guard's decision.
+/// True if the guard accepts a pose.
 pub fn is_safe(firmware: &CoreRobot, pose: &Pose) -> bool {
     Clearance::of(firmware, pose).hazard(firmware).is_none()
 }

@@ -12,7 +12,7 @@ fn a_hundred_cycles_take_a_hundred_periods() {
     for (Named { name, .. }, float, gait) in gaits() {
         let frames = (5000.0 * float.period()).round();
         let phase = (0..frames as u32).fold(0, |phase, _| gait.advance(phase, FULL_PACE));
-        // The advance is rounded to 1/2^24 cycle, so each frame may be half off.
+        // The advance is rounded to 1/2^24 cycle, so each frame may be off by half of that.
         let expected = (frames / 50.0 / float.period()).fract();
         let error = (f64::from(phase) / f64::from(CYCLE)
             - if float.is_reversed() {
@@ -53,7 +53,7 @@ fn every_speed_gives_its_share_of_every_gaits_pace() {
                 for _ in 0..FRAMES {
                     let before = walker.motion().phase();
                     walker.run(1);
-                    // The shorter direction: less than half a cycle in a frame.
+                    // A frame advances by less than half a cycle, so the shorter direction is the right one.
                     let step = walker.motion().phase().wrapping_sub(before) << 8;
                     advance += i64::from(step as i32 >> 8);
                 }

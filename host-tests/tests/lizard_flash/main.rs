@@ -43,19 +43,19 @@ static TALKER: LazyLock<Image> = LazyLock::new(|| {
     )
 });
 
-/// Flash of a board that has the firmware inside the program with a robot and nothing else.
+/// The flash below the boot loader of a board that has the program's firmware and this robot.
 fn firmware_of(robot: &Robot) -> Vec<u8> {
     let image = lizard_host::firmware::image_with(robot);
     let uno = Uno::with_image(image, Fidelity::DataSheet);
     uno.flash()[..BOOT].to_vec()
 }
 
-/// The same with the robot under test.
+/// The flash below the boot loader of a board that has the firmware and the robot under test.
 fn firmware() -> Vec<u8> {
     firmware_of(robot())
 }
 
-/// Another robot than the one under test, by the name under which the program has it.
+/// A robot other than the one under test, and its name in the program.
 fn another() -> (&'static str, Robot) {
     let name = match robot().name() {
         "large" => "unequal",
@@ -65,7 +65,7 @@ fn another() -> (&'static str, Robot) {
     (name, Robot::load(&file).expect("it is right"))
 }
 
-/// `lizard flash` at the desk's port.
+/// Starts `lizard flash` at the desk's port.
 fn lizard_flash(desk: &Desk, arguments: &[&str]) -> Shell {
     let lizard = std::env::var("LIZARD").expect("`make flash-test` compiles the program");
     let name = desk.name();
@@ -106,7 +106,7 @@ fn end_well(desk: &mut Desk, shell: &Shell) -> String {
     screen
 }
 
-/// Begins an upload to a board, and waits until some pages of the new code are there.
+/// Begins an upload to a board, and waits until some pages of the new code are written.
 fn begin(desk: &mut Desk) -> Shell {
     let shell = lizard_flash(desk, &[]);
     let half = desk.until(|uno| uno.flash()[0x1000] != 0xff || shell.has_ended());
@@ -116,7 +116,7 @@ fn begin(desk: &mut Desk) -> Shell {
     shell
 }
 
-/// A board that has the firmware, as if it had been written.
+/// A board whose flash has the firmware, set without an upload.
 fn with_firmware() -> Desk {
     let mut desk = Desk::with_a_new_board();
     desk.uno.set_flash(0, &firmware());
@@ -167,7 +167,7 @@ fn one_page_that_differs_is_written_alone() {
     let screen = end_well(&mut desk, &shell);
     let another = "the board has another build of lizard";
     assert!(screen.contains(another), "{screen}");
-    // This page, and the one where the chip starts.
+    // The page that differs, and the one at address 0, where the chip starts.
     let two = "\n256 bytes written and verified";
     assert!(screen.contains(two), "{screen}");
 }
@@ -194,7 +194,7 @@ fn a_board_unplugged_in_the_middle_does_nothing_until_it_is_written_again() {
     assert!(desk.uno.transmitted().is_empty(), "it says nothing");
     let edges = desk.uno.take_edges();
     assert!(edges.is_empty(), "no pin moves: {edges:?}");
-    // These seconds were simulated; a port uses real time.
+    // These seconds were simulated, but a port runs in real time: the board gets a new port.
     unplug(&mut desk);
 
     let shell = lizard_flash(&desk, &[]);

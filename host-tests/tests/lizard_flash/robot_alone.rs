@@ -1,4 +1,4 @@
-//! A robot that is written alone, after the firmware that the board has.
+//! Uploads of a robot alone, behind the firmware that the board already has.
 
 use super::*;
 
@@ -102,7 +102,7 @@ fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
 #[test]
 fn a_robot_alone_is_not_written_behind_another_program() {
     let mut desk = with_firmware();
-    // As avrdude leaves it: only the pages of the sketch differ.
+    // As avrdude leaves the flash after a sketch: only the sketch's pages differ.
     desk.uno.set_flash(0, &TALKER.flash());
     let before = desk.uno.flash().to_vec();
     let shell = lizard_flash(&desk, &["--only-robot"]);

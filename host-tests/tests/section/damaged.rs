@@ -1,6 +1,6 @@
-//! A damaged section is not a robot, and one with a valid checksum can harm no servo. The
-//! core runs here with checks that the chip has no room for: a number that overflows, or a byte
-//! that is read beyond the section's end, ends the test.
+//! Damaged sections: the core refuses them, and one that has a valid checksum can harm no servo.
+//! The core runs here with checks that the chip has no room for: a number that overflows, or a
+//! byte that is read beyond the section's end, fails the test.
 
 use std::mem::offset_of;
 
@@ -19,7 +19,7 @@ use lizard_robot::flash;
 
 use crate::sections;
 
-/// The places of fields in a header.
+/// The positions of fields in a header.
 const FORMAT: std::ops::Range<usize> = 4..6;
 const LENGTH: std::ops::Range<usize> = 6..8;
 
@@ -76,7 +76,7 @@ fn a_section_that_ends_at_any_byte_is_refused() {
         for length in 0..section.len() {
             let cut = &section[..length];
             assert!(damage(cut).is_some(), "{} cut at {length}", named.name);
-            // The last bytes may be those of erased flash themselves.
+            // The last bytes may equal those of erased flash.
             if section[length..].iter().any(|byte| *byte != 0xff) {
                 let cut = erased_after(cut);
                 assert!(damage(&cut).is_some(), "{} erased at {length}", named.name);
@@ -181,8 +181,8 @@ fn robots_with_changed_numbers_are_refused_or_harmless() {
     assert!(refused > 10_000 && lived > 5_000, "{refused} {lived}");
 }
 
-/// A gait that exceeds the servo range which its section claims for gaits, where no
-/// limit of the guard stops it.
+/// Gaits that exceed the range that their section claims for gaits, with limits at which the guard
+/// stops nothing.
 #[test]
 fn a_gait_that_would_leave_the_travel_is_held_within_it() {
     let rng = &mut rng(154);
@@ -224,7 +224,7 @@ fn a_gait_that_would_leave_the_travel_is_held_within_it() {
     assert!(held > 50, "{held} gaits were held");
 }
 
-/// Neutral angles beyond the travel, in which the robot would stand.
+/// Neutral angles outside the travel: the robot could not stand in them.
 #[test]
 fn a_robot_whose_servo_cannot_reach_its_neutral_angle_is_refused() {
     for (named, _) in sections() {
@@ -247,9 +247,9 @@ fn a_robot_whose_servo_cannot_reach_its_neutral_angle_is_refused() {
     }
 }
 
-/// Changes a number at random: one for servos, pins or limits, or one after all
-/// these, in curves, gaits, waveforms or maps. The device trusts the bars and the places
-/// of the parts, which the host that made the section has checked.
+/// Changes a number at random: one for servos, pins or limits, or one after all these, in curves,
+/// gaits, waveforms or maps. The device trusts the bars and the offsets of the parts, which the
+/// host that made the section has checked.
 fn change(rng: &mut Rng, section: &mut [u8]) {
     let numbers = size_of::<Header>();
     let offset = match rng.u8(..4) {
@@ -272,8 +272,8 @@ fn change(rng: &mut Rng, section: &mut [u8]) {
     section[offset..offset + 2].copy_from_slice(&word.to_le_bytes());
 }
 
-/// Runs a robot whose section was accepted, with any numbers: it obeys or refuses, completes
-/// every frame, and turns no servo beyond its travel.
+/// Runs a robot whose section was accepted, with any numbers: it obeys or refuses each command,
+/// completes every frame, and turns no servo beyond its travel.
 fn check_motion(rng: &mut Rng, section: &[u8]) {
     let robot = Robot::open(flash(section)).expect("it was accepted");
     let mut running = Running::power_on(robot);

@@ -1,5 +1,5 @@
-//! The robot's section of flash: the core reads what was written, and a section that is not a
-//! robot moves no servo.
+//! The robot's section of flash: the core reads what was written, and an invalid section moves no
+//! servo.
 
 use std::sync::LazyLock;
 

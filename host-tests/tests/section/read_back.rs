@@ -1,6 +1,6 @@
-//! A section that is read back holds what robot.toml says, field by field: the
-//! reader is the one of the AVR, and the truth is the robot in floating point, not the
-//! numbers that the section was made of.
+//! Sections that are read back: each field must match robot.toml. The reader is the one of the
+//! AVR. The expected values are those of the robot in floating point, not the numbers that the
+//! section was made of.
 
 use lizard_core::guard::clearance::Clearance;
 use lizard_core::numbers::bars::Bars;
@@ -30,7 +30,7 @@ fn numbers(flash: Region<'_>) -> Numbers {
     flash.read(size_of::<Header>() as u16)
 }
 
-/// Steps of a length, rounded to nearest.
+/// A length in steps, rounded to nearest.
 fn steps(mm: f64, scale: Scale) -> f64 {
     (mm * f64::from(1u32 << scale.bits)).round()
 }
@@ -91,8 +91,8 @@ fn the_servos_are_read_back() {
             let us = |sweep: i32| servo.neutral_us + servo.us_per_degree * degrees(sweep);
             for sweep in read.min.0..=read.max.0 {
                 let error = f64::from(read.width(Sweep(sweep)).0) - 16.0 * us(sweep.into());
-                // Half a cycle each of the neutral width and of the product; the gain's
-                // own rounding over the travel.
+                // Half a cycle each for the neutral width and for the product, and the rounding of the
+                // gain over the travel.
                 assert!(
                     error.abs() <= 1.5,
                     "{name} {one:?}: {error} cycles at {sweep}"
@@ -127,7 +127,7 @@ fn the_limits_the_slew_limit_and_what_the_gaits_need_are_read_back() {
         let per_frame = toml.pace().slew * STEPS_PER_DEGREE / 50.0;
         let down = per_frame - f64::from(robot.slew().per_frame);
         assert!((-1e-5..1.0).contains(&down), "{name}: {down}");
-        // The farthest sample of any gait; the tables are read by the core.
+        // The farthest sweeps of any gait in floating point.
         let mut widest = [[0.0f64; 2]; 4];
         for gait in toml.gaits() {
             for phase in 0..4096 {
@@ -146,7 +146,7 @@ fn the_limits_the_slew_limit_and_what_the_gaits_need_are_read_back() {
                 degrees(read.min.0.into()) - min,
                 degrees(read.max.0.into()) - max,
             ];
-            // The tables' tenth of a degree, and a step of rounding.
+            // A tenth of a degree for the tables, and a step of rounding.
             assert!(
                 error.iter().all(|error| error.abs() < 0.11),
                 "{name} {servo:?}: {error:?}"
@@ -169,7 +169,7 @@ fn the_bars_and_the_sliders_are_read_back() {
             let bars = [base, left, right].map(length);
             let expected = Bars::new(bars, [a, b].map(length), scale);
             assert_eq!(*five_bar.bars(), expected, "{name} {end:?}");
-            // The finest step in which the lengths fit.
+            // The lengths fit at this scale.
             let longest = (base + left + right).max(a).max(b);
             let fits = |bits: u32| longest * f64::from(1u32 << bits) < 127.0 * 256.0;
             let bits = u32::from(scale.bits);
@@ -203,7 +203,7 @@ fn the_bars_and_the_sliders_are_read_back() {
     });
 }
 
-/// The expected entry of a curve, by the triangle of the couplers.
+/// The four tables of an end, each with its own argument and expected entry.
 #[derive(Clone, Copy, PartialEq)]
 enum Shape {
     Rise,
@@ -222,7 +222,7 @@ fn the_curves_at_every_point_of_their_tables_are_read_back() {
         ] {
             let scale = robot.end(end).bars().scale();
             let [a, b] = [a, b].map(|mm| steps(mm, scale));
-            // Of squared distances in quarters of a step's square.
+            // Squared distances divided by four, in squared steps.
             let [reach, smallest] = [(a + b) * (a + b) / 4.0, (a - b) * (a - b) / 4.0];
             let shapes = [Shape::Rise, Shape::Stretched, Shape::Folded, Shape::Skew];
             assert!(
@@ -234,7 +234,7 @@ fn the_curves_at_every_point_of_their_tables_are_read_back() {
                 for (index, entry) in table.into_iter().enumerate().take(ENTRIES) {
                     let largest = match shape {
                         Shape::Rise | Shape::Skew => reach,
-                        // Of whole numbers, as the core counts them.
+                        // Rounded down to integers, as in the core.
                         Shape::Stretched => (reach.floor() / 4.0).floor(),
                         Shape::Folded => smallest.floor(),
                     };
@@ -251,8 +251,8 @@ fn the_curves_at_every_point_of_their_tables_are_read_back() {
                         _ => ((reach - s) * (s - smallest)).sqrt() / s,
                     };
                     let exact = (1024.0 * exact).min(32_767.0);
-                    // One of rounding, and a quarter of a step's square in `s`, which
-                    // counts where the curve is steep.
+                    // One unit of rounding, and the rounding of `s`, which matters where the curve is
+                    // steep.
                     let hair = 1.01 + exact * 2.0 / (s - smallest).min(reach - s).max(1.0);
                     let error = f64::from(entry) - exact;
                     assert!(
@@ -300,10 +300,10 @@ fn the_gaits_their_names_and_their_waveforms_at_every_phase_are_read_back() {
     });
 }
 
-/// The servos of the maps: that of the rows and that of the columns.
+/// The servos of each map: the one of its rows and the one of its columns.
 const PAIRS: [[usize; 2]; 4] = [[0, 1], [2, 3], [0, 3], [1, 2]];
 
-/// The rows of the four maps: where each row's certified sweeps begin and end.
+/// The rows of the four maps: the sweeps of each row, and the sweeps of the column that are certified in it.
 fn maps(flash: Region<'_>) -> [Vec<[std::ops::RangeInclusive<i32>; 2]>; 4] {
     let numbers = numbers(flash);
     let place = numbers.parts[Part::Rows as usize];
@@ -320,7 +320,7 @@ fn maps(flash: Region<'_>) -> [Vec<[std::ops::RangeInclusive<i32>; 2]>; 4] {
     })
 }
 
-/// True if the exact guard accepts everything that depends on the servos of a map.
+/// True if the exact guard accepts every condition that depends on the servos of a map.
 fn accepts(robot: &Robot, pair: usize, pose: &Pose) -> bool {
     let clearance = Clearance::of(robot, pose);
     let limits = robot.limits();
@@ -386,7 +386,7 @@ fn a_pose_in_all_four_maps_is_certified_and_the_guard_accepts_it() {
         for n in 0..20_000 {
             let mut pose = Pose::NEUTRAL;
             for (sweep, travel) in pose.0.iter_mut().zip(robot.calibration()) {
-                // All sweeps, those of the travel, and those near neutral.
+                // Any sweep, any within the travel, or any near neutral.
                 *sweep = Sweep(match n % 3 {
                     0 => rng.i16(..),
                     1 => rng.i16(travel.min.0..=travel.max.0),

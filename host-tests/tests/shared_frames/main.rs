@@ -1,4 +1,4 @@
-//! Functions with shared prologues and epilogues behave as with their own.
+//! Functions with shared prologues and epilogues behave as with prologues and epilogues of their own.
 
 use std::fs;
 
@@ -10,8 +10,8 @@ use simulated_uno::{Fidelity, Image, Uno};
 
 mod random_programs;
 
-/// A program that sorts, divides, mixes and recurs with many registers and large frames,
-/// while a timer interrupts it, and leaves what it found.
+/// A program that sorts, divides, mixes and recurses with many registers and large frames, while a
+/// timer interrupts it. Its results remain in RAM.
 const PROGRAM: &str = r#"
 #include <avr/io.h>
 #include <avr/interrupt.h>
@@ -109,12 +109,12 @@ fn a_program_computes_the_same_with_shared_beginnings_and_ends() {
     let ((plain, deep), (short, deeper)) = (results(&plain), results(&short));
     assert_eq!(plain, short);
     assert!(plain.iter().any(|byte| *byte != 0));
-    // Ten frames of `deep` lie on one another; each may hold a register more.
+    // Ten frames of `deep` are on the stack at once; each may save a register more.
     assert!(deeper.abs_diff(deep) < 40, "{deep} {deeper}");
 }
 
-/// A function whose last argument lies on the stack, above the registers that it pushed, of
-/// which some are missing between the first and the last; it also has variables there.
+/// A function whose last argument lies on the stack, above the registers that it pushed. It does not
+/// push every register between the first and the last, and has variables on the stack, too.
 const STACK_ARGUMENT: &str = r#"
 #include <stdint.h>
 volatile uint8_t done, sum;
@@ -152,14 +152,14 @@ fn callers_do_not_rely_on_what_a_shared_beginning_changes() {
     assert!(!passes.contains("ipra"), "{passes}");
 }
 
-/// Registers that a function has to leave as they were.
+/// The call-saved registers: a function must leave them as they were.
 const KEPT: [u8; 18] = [
     2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 28, 29,
 ];
 
-/// Calls a function that saves from `first` on and makes room, fills the room and the
-/// registers with something else, restores, and returns; forty times, while a timer
-/// interrupts every 61 cycles. Then registers and stack pointer are in RAM.
+/// A program that calls, forty times, a function that saves the registers from `first` on, reserves
+/// `room` bytes, overwrites both, restores the registers and returns, while a timer interrupts every
+/// 61 cycles. The registers and the stack pointer remain in RAM.
 fn program(first: u8, room: u8) -> String {
     let load = |registers: &[u8], plus: u8| -> String {
         let each = registers.iter();

@@ -1,4 +1,4 @@
-//! Random C functions compute the same whether the linker rewrote them or not.
+//! Random C functions, which must compute the same before and after the linker rewrites them.
 //!
 //! They have up to 30 bytes of arguments, of which 18 fit into registers; their arrays lie on the
 //! stack, they call one another, and a timer interrupts them.
@@ -15,10 +15,10 @@ use simulated_uno::{Fidelity, Image, Uno};
 
 use crate::address;
 
-/// Functions of one program, as many as 32 KB hold.
+/// Number of functions of one program, as many as 32 KB hold.
 const FUNCTIONS: usize = 40;
 
-/// A function calls another of its own group only, so that the stack has room.
+/// Number of functions in a group. A function calls only others of its group, so that the stack suffices.
 const GROUP: usize = 5;
 
 /// Number of programs in an ordinary run. Five times as many have 10 000 functions.
@@ -33,7 +33,7 @@ const TYPES: [(&str, usize); 5] = [
     ("int8_t", 2),
 ];
 
-/// An expression of some variables.
+/// A random expression of these variables.
 fn expression(random: &mut Rng, names: &[String], depth: u8) -> String {
     if depth > 1 || random.u8(..4) == 0 {
         return match random.usize(..=names.len()) {
@@ -50,7 +50,7 @@ fn expression(random: &mut Rng, names: &[String], depth: u8) -> String {
     }
 }
 
-/// A function of that number, which may call an earlier one; adds its types to `signatures`.
+/// Writes the next function, which may call an earlier one, and adds its argument types to `signatures`.
 fn function(random: &mut Rng, signatures: &mut Vec<Vec<&'static str>>) -> String {
     let number = signatures.len();
     let (mut types, mut bytes) = (Vec::new(), 0);
@@ -154,8 +154,8 @@ fn results(image: &Image) -> Vec<[u8; 4]> {
     (0..FUNCTIONS as u16).map(of).collect()
 }
 
-/// The functions of a program that return something else when the linker has rewritten it, and
-/// whether it has; `None` if avr-gcc fails, since no register is left or a branch is too far.
+/// The functions of a program that return another value after the linker has rewritten it, and true if
+/// it has rewritten any. `None` if avr-gcc fails, for want of a register or because a branch is too far.
 fn differences(seed: u64) -> Option<(Vec<usize>, bool)> {
     let object = object_of_c(&program(&mut Rng::with_seed(seed))).ok()?;
     let plain = link("", &object).ok()?;

@@ -1,9 +1,10 @@
 //! A command in the root of the repository, as a user types it: its screen can be read while it
 //! runs, lines can be typed, Ctrl-C ends it.
 //!
-//! A program takes over from its parent which signals it ignores, and a shell without job control
-//! lets what it starts with `&` ignore Ctrl-C. Where these tests run so, a command would, too,
-//! until it sets a handler of its own. A user's shell does not.
+//! A process inherits from its parent the signals that it ignores, and a shell without job control
+//! makes commands that it starts with `&` ignore Ctrl-C. If these tests run in this way, a command
+//! would ignore it, too, until it sets a handler of its own. So it starts with the default signals,
+//! as from a user's shell.
 #![allow(dead_code)] // each test uses a part of it
 
 use std::io::{Read, Write};
@@ -50,7 +51,7 @@ impl Shell {
             show(child.stdout.take().expect("it is piped"), &screen),
             show(child.stderr.take().expect("it is piped"), &screen),
         ];
-        // Kept open: ravedude's console reads without a pause after its end.
+        // Kept open: at the end of its input, ravedude's console reads without a pause.
         let keyboard = child.stdin.take().expect("it is piped");
         let child = Mutex::new(child);
         Self {

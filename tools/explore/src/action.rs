@@ -42,7 +42,7 @@ pub enum Action {
     StopReading(bool),
 }
 
-/// Lines that are tried besides an example of each other word.
+/// Lines that are tried. Each word that begins none of them is tried with its example.
 const LINES: [&str; 30] = [
     "stand",
     "walk",
@@ -77,7 +77,7 @@ const LINES: [&str; 30] = [
 ];
 
 impl Action {
-    /// Every action, whatever the state.
+    /// Every action, possible or not in the current state.
     pub fn all() -> Vec<Self> {
         let mut all = vec![
             Self::Frames(1),
@@ -95,8 +95,8 @@ impl Action {
         all.extend(LINES.map(Self::Say));
         all.extend(Rate::ALL.map(Self::SendAt));
         all.extend(others.map(|word| Self::Say(word.example())));
-        // The last hand-over was 16 ms ago. With these lengths main misses no hand-over, one, three
-        // or five; or the watchdog interrupts it and it continues; or it is reset.
+        // The last hand-over was 16 ms ago. In these times main misses no hand-over, one, three or
+        // five; or the watchdog ends the pulses; or it resets the chip.
         all.extend([3, 15, 60, 100, 120, 130, 200, 229, 240].map(Self::Stall));
         all.extend([5_000, 4_100, 3_900, 3_500].map(Self::Supply));
         all.extend([Self::Weak(true), Self::Weak(false)]);

@@ -1,5 +1,5 @@
-//! The equality of states: two count as equal if the core's own `Debug` shows the same,
-//! except for counters that only count.
+//! Equality of states: two states are equal if the core's own `Debug` shows the same for both,
+//! except for counters that have no effect.
 //!
 //! The core derives `Debug` for everything it holds, so a new field is included
 //! automatically, and the core needs no code for this. A field that cannot matter is left
@@ -27,11 +27,11 @@ type Field = (&'static str, &'static str, Treatment);
 /// The treatment of fields, by the name of their struct.
 const RULES: &[Field] = &[
     ("Main", "ticks", Skip),
-    // The last line; the next byte begins a new one.
+    // The previous line; the next byte begins a new one.
     ("Console", "line", Skip),
     // No action ends within a line, so no line waits for its rest.
     ("Console", "silence", Skip),
-    // A line at another rate has enough wrong bytes, whatever came before.
+    // A line at another rate has enough wrong bytes, however many came before.
     ("RateFinder", "wrong_bytes", Skip),
     (
         "Motion",
@@ -48,7 +48,7 @@ const RULES: &[Field] = &[
     ("Led", "frames", Skip),
     ("Safety", "is_lit", Skip),
     ("Safety", "late", Skip),
-    // The observer also counts this, where it matters.
+    // The observer counts this, too, where it matters.
     ("Safety", "silence", Skip),
     ("Safety", "boot", Coarse(countdown)),
     ("Supply", "reading", Skip),
@@ -64,7 +64,7 @@ const RULES: &[Field] = &[
     ("Control", "restarts", Coarse(|count| count.min(1))),
 ];
 
-/// The fields that a refused command may change: they record that a line came.
+/// The fields that a refused command may change: they record that a line has arrived.
 const A_LINE_CAME: &[Field] = &[
     ("Main", "ticks", Skip),
     ("Console", "line", Skip),
@@ -95,12 +95,12 @@ fn pace(pace: u64) -> u64 {
     u64::from(pace > 0) + u64::from(pace >= 1024)
 }
 
-/// A number that two values share if no rule tells them apart.
+/// Returns a number that is the same for two values that no rule tells apart.
 pub fn coarse(value: &impl fmt::Debug) -> u64 {
     fingerprint(value, RULES)
 }
 
-/// The same with every field except those that record that a line came.
+/// Returns the fingerprint of every field except those that record that a line has arrived.
 pub fn without_line_counters(value: &impl fmt::Debug) -> u64 {
     fingerprint(value, A_LINE_CAME)
 }
@@ -137,8 +137,8 @@ impl Fingerprint {
     }
 }
 
-/// Reads what `Debug` writes: it writes a name, a brace, a field's name, a colon and a
-/// value, each by itself.
+/// A reader of the output of `Debug`, which writes a name, a brace, a field's name, a colon and
+/// a value, each as a separate piece.
 struct Reader {
     rules: &'static [Field],
     fingerprint: Fingerprint,

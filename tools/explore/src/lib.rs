@@ -1,5 +1,5 @@
-//! A search for sequences of commands and faults that break a rule of safety, instead of a
-//! sample of them: shortest first, as many as time allows.
+//! A search for all sequences of commands and faults that break a rule of safety, not for a random
+//! sample of them: the shortest first, as many as time allows.
 //!
 //! It does not explore a model of the firmware, but the firmware's own core, [`Main`], on
 //! the board without a chip, [`VirtualBoard`]. A [`World`] contains both and an

@@ -1,8 +1,8 @@
 //! Searches breadth first through all sequences of [`Action`]s, as far as time allows.
 //!
-//! All states of one length are processed before any of the next, by as many threads as there are
-//! processors. So the first sequence that breaks a rule is one of the shortest. Of a processed
-//! state only its number is kept, and the step that reached it.
+//! All states that are reached by one number of actions are processed before any of the next, by as
+//! many threads as there are processors. So the first sequence that breaks a rule is one of the
+//! shortest. Of a processed state only its number is kept, and the step that reached it.
 
 use std::collections::{BTreeMap, HashSet};
 use std::fmt::Write as _;
@@ -19,7 +19,7 @@ use crate::action::Action;
 use crate::initial_states::{self, InitialState};
 use crate::world::{Verdict, World};
 
-/// States that a thread takes at once.
+/// Number of states that a thread takes at a time.
 const CHUNK: usize = 256;
 
 type SeenStates = HashSet<u64>;
@@ -46,7 +46,7 @@ struct Step {
     action: u8,
 }
 
-/// Searches from all initial states, until this many distinct states are reached or none is left.
+/// Searches from all initial states, until `max` distinct states are reached or none is left.
 pub fn search(robot: Robot<'static>, max: usize) -> SearchResult {
     let actions = Action::all();
     let initial_states = initial_states::all(robot);
@@ -86,7 +86,7 @@ pub fn search(robot: Robot<'static>, max: usize) -> SearchResult {
             broken.extend(part.broken);
             next.extend(part.reached);
         }
-        // So the result does not depend on which thread was quicker.
+        // Sorted, so that the result does not depend on which thread was quicker.
         broken.sort_by_key(|(from, action, _)| (*from, *action));
         for (from, action, fault) in broken {
             let entry = found.broken.entry(fault.rule).or_insert_with(|| {
@@ -181,7 +181,7 @@ impl Part {
     }
 }
 
-/// Applies an action; a panic breaks a rule, too.
+/// Applies an action. A panic counts as a broken rule.
 fn apply_catching_panics(world: &mut World, action: Action) -> Verdict {
     let applied = panic::catch_unwind(AssertUnwindSafe(|| world.apply(action)));
     applied.unwrap_or_else(|reason| {

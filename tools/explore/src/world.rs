@@ -40,7 +40,7 @@ const FRAME: Time = 20 * MS;
 pub struct World {
     /// The firmware on its board.
     pub running: Running,
-    /// The observer from outside.
+    /// The observer, which sees the robot from outside.
     pub observer: Observer,
     now: Time,
     /// True while three servos that wake pull the supply down.
@@ -51,7 +51,7 @@ pub struct World {
     unread: Option<&'static str>,
     /// The rate at which lines are sent.
     sender: Rate,
-    /// Lines whose answers are judged already and not printed yet.
+    /// Number of lines whose answers are judged already and not printed yet.
     known: u8,
 }
 
@@ -211,7 +211,7 @@ impl World {
         self.note_restart(cause);
     }
 
-    /// The program has restarted, and its output is cut off.
+    /// Records that the program has restarted, which cuts its output off.
     fn note_restart(&mut self, cause: Cause) {
         self.running.board.transmitter.text.clear();
         self.unread = None;
@@ -219,7 +219,7 @@ impl World {
         self.observe(Event::Start(cause));
     }
 
-    /// Lets frames pass, main running.
+    /// Runs some frames, with main running.
     fn frames(&mut self, count: u8) -> Verdict {
         let start = self.now;
         let fault = (self.fault(), self.observer.stopped_since());
@@ -316,7 +316,7 @@ impl World {
         self.listen(self.now - FRAME)
     }
 
-    /// Lets time pass without main; true if the watchdog has restarted it.
+    /// Lets time pass while main does not run; true if the watchdog has restarted the program.
     fn pass_time(&mut self, ms: u16) -> bool {
         let bites = self.running.board.pass_time(ms);
         if bites {

@@ -2,11 +2,11 @@
 //!
 //! Bytes come from a half-open port, a modem manager or a cat on the keyboard; the
 //! EEPROM may hold another program's data. Whatever they are, each line has one
-//! answer, no pulse leaves a servo's limits, and what was saved stays whole.
+//! answer, no pulse leaves a servo's limits, and saved settings stay intact.
 //!
 //! [`console`] and [`memory`] check that for one input. `make test` calls them with
-//! millions of seeded random bytes and lines, `make fuzz` with what LLVM's libFuzzer
-//! finds.
+//! millions of seeded random bytes and lines, `make fuzz` with the inputs that LLVM's
+//! libFuzzer generates.
 
 mod board;
 
@@ -49,8 +49,8 @@ pub fn console(data: &[u8]) {
     board.assert_memory_is_right();
 }
 
-/// Starts a robot with an EEPROM made of these bytes. The first ones replace the contents of its
-/// three records, which stay valid; each further three change a byte anywhere, so that a record
+/// Starts a robot with an EEPROM made of these bytes. The first ones change the contents of its
+/// three records, which stay valid; each further three set a byte anywhere, so that a record
 /// may be damaged, too.
 ///
 /// # Panics

@@ -12,12 +12,12 @@ use crate::code::Code;
 use crate::edit::{Edit, Reference};
 use crate::instruction::{is_branch, is_rjmp, skips};
 
-/// The reach of a branch, bytes. Later edits bring code no farther apart.
+/// The reach of a branch, bytes. Later edits never increase a distance.
 const REACH: u64 = 2 * 60;
 
-/// The edit of the first branch over a jump, where no other jump leads to that jump. `place` gives
-/// the offset of a reference's target if it is in this code; `targets` are the offsets that
-/// something refers to.
+/// Returns the edit of the first branch over a jump to which no other jump leads. `place` gives the
+/// offset of a reference's target if it is in this code; `targets` are the offsets that something
+/// refers to.
 pub fn edit(
     code: &Code,
     targets: &[u64],
@@ -45,7 +45,7 @@ pub fn edit(
             Some(Edit {
                 at: branch.offset,
                 remove: 4,
-                // brbs and brbc differ in one bit; the distance is the linker's.
+                // brbs and brbc differ in one bit; the linker fills in the distance.
                 insert: vec![(branch.code ^ 0x0400) & 0xfc07],
                 references: vec![Reference {
                     offset: 0,

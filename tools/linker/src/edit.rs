@@ -69,7 +69,7 @@ impl Edits {
         self.0.iter().map(Edit::gain).sum()
     }
 
-    /// The new offset of what was at an offset.
+    /// The new offset of the code that was at `offset`.
     pub fn new_offset(&self, offset: u64) -> u64 {
         let before = self
             .0

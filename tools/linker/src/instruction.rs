@@ -75,8 +75,8 @@ pub const fn accesses_stack_pointer(code: u16) -> bool {
     code & 0xf000 == 0xb000 && (port == 0x3d || port == 0x3e)
 }
 
-/// True if an instruction has r28 or r29 as an operand, or uses Y. `lpm`, which has no operand,
-/// is also counted as one that does.
+/// True if an instruction has r28 or r29 as an operand, or uses Y. Also true for `lpm` without an
+/// operand, which uses neither.
 pub fn may_use_frame_pointer(code: u16) -> bool {
     let is_frame_pointer = |register: u16| register == 28 || register == 29;
     let first = code >> 4 & 0x1f;

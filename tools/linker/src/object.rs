@@ -33,11 +33,11 @@ impl From<object::build::Error> for ShrinkError {
 /// The number of bytes saved by each kind of edit.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Savings {
-    /// By shared prologues and epilogues; the linker shortens most calls further.
+    /// Bytes saved by shared prologues and epilogues; the linker shortens most calls further.
     pub frames: i64,
-    /// By opposite branches.
+    /// Bytes saved by opposite branches.
     pub branches: i64,
-    /// By functions near those that call them, as far as that is known before linking.
+    /// Bytes saved by functions near those that call them, as far as that is known before linking.
     pub calls: i64,
 }
 
@@ -73,8 +73,8 @@ pub fn shrink(file: &[u8]) -> Result<Option<(Vec<u8>, Savings)>, ShrinkError> {
 struct Object<'a>(Builder<'a>);
 
 impl Object<'_> {
-    /// Adds a table for the names of sections: LLVM keeps them in one with the names of symbols, and
-    /// the writer needs two.
+    /// Adds a table for the names of sections. LLVM keeps them in one table with the names of symbols,
+    /// but the writer needs two.
     fn name_sections(&mut self) {
         let is_table = |section: &Section| matches!(section.data, SectionData::SectionString);
         if !self.0.sections.iter().any(is_table) {
@@ -158,7 +158,7 @@ impl Object<'_> {
         Code::read(&self.bytes(section), self.references(section))
     }
 
-    /// The offset in a section of a symbol and an addend; `None` for another section.
+    /// The offset of a symbol plus an addend; `None` if the symbol is in another section.
     fn place(&self, section: SectionId, symbol: SymbolId, addend: i64) -> Option<u64> {
         let symbol = self.0.symbols.get(symbol);
         (symbol.section == Some(section)).then(|| symbol.st_value.wrapping_add_signed(addend))
@@ -169,7 +169,7 @@ impl Object<'_> {
         self.targets_without(section, None)
     }
 
-    /// All offsets of a section that something refers to, other than the code that an edit replaces.
+    /// All offsets of a section that something refers to, except from the code that an edit replaces.
     fn targets_without(&self, section: SectionId, edit: Option<&Edit>) -> Vec<u64> {
         let mut targets = Vec::new();
         for table in &self.0.sections {

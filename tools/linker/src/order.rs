@@ -1,4 +1,4 @@
-//! The order of functions in which those that call one another are near one another.
+//! The order of functions, chosen so that those that call one another are near one another.
 //!
 //! A `call` has two words. If the target is less than 4 KB away, the linker turns it into
 //! an `rcall` of one word, and a `jmp` into an `rjmp` (`--relax`). A compiler writes
@@ -11,14 +11,14 @@
 /// The reach of a relative call, bytes, less the error of the estimated sizes.
 const REACH: u32 = 4096 - 96;
 
-/// The cost of a call out of reach, in bytes beyond the reach, which cost 1 each: they only show
-/// the search in which direction an order improves.
+/// The cost of a call out of reach. Each byte beyond the reach costs 1 more, which only shows the
+/// search in which direction an order improves.
 const OUT_OF_REACH_COST: u32 = 16_384;
 
 /// The number of orders tried.
 const TRIES: u32 = 600_000;
 
-/// The additional cost with which an order is accepted at first; at the end it is 0.
+/// The rise of the cost that is accepted at first; it falls to 0 at the end.
 const MAX_EXTRA_COST: u32 = 4 * OUT_OF_REACH_COST;
 
 /// The seed of the search; any number would do.
@@ -35,7 +35,7 @@ pub struct Call {
     pub to: usize,
 }
 
-/// Pieces of code, all of which but the last may be put into any order.
+/// Pieces of code that may be put into any order, except the last, which stays the last.
 #[derive(Debug, Clone, Default)]
 pub struct Pieces {
     /// The size of each piece, bytes.

@@ -14,7 +14,7 @@ use crate::mujoco::scene_of;
 use crate::surface::{self, Surface, Surfaces};
 use crate::table::Part;
 
-/// The gaits that are walked, as `lizard gaits --assumptions` has them.
+/// The gaits that are walked, the same as in `lizard gaits --assumptions`.
 pub const GAITS: [&str; 5] = ["walk", "trot", "crawl", "left", "arc-left"];
 /// The least change that matters, percent.
 const MIN_CHANGE_PERCENT: f64 = 10.0;
@@ -39,7 +39,7 @@ const UNCHANGED: Assumption = Assumption {
 };
 
 impl Assumption {
-    /// All changes but the surfaces, which have a table of their own.
+    /// All changes except the surfaces, which have a table of their own.
     pub const ALL: [Self; 6] = [
         Self {
             words: "analog servos that drive in bursts",
@@ -75,7 +75,7 @@ impl Assumption {
         },
     ];
 
-    /// The robot.
+    /// The paper's robot with this change.
     ///
     /// # Panics
     /// If robots/paper.toml does not have the table that is changed.
@@ -86,7 +86,7 @@ impl Assumption {
         }
     }
 
-    /// A gait's walk; `level` is its displacement as the paper's robot has it.
+    /// The scene of a gait's walk; `level` is the gait's displacement with the unchanged robot.
     ///
     /// # Panics
     /// If the robot has no such gait.

@@ -56,8 +56,8 @@ pub struct Case {
 }
 
 impl Case {
-    /// All cases in the order of the tables. Struts with springs walk as rigid ones do, so one case
-    /// of a long foot is enough there.
+    /// All cases in the order of the tables. Legs on struts with springs walk as rigid ones do, so one
+    /// case of a long foot is enough for them.
     pub const ALL: [Self; 5] = {
         const fn case(legs: Legs, feet: Feet) -> Case {
             Case { legs, feet }

@@ -9,7 +9,7 @@ use crate::surface::parts;
 use crate::table::Part;
 
 /// The distance of the nearest foot from the edge before and after the measured cycles, mm: feet
-/// swing by 15 mm, and a dome touches an edge of 2 mm 11 mm before its middle.
+/// swing by 15 mm, and a dome touches an edge 2 mm high while its middle is 11 mm away.
 const CLEARANCE: f64 = 25.0;
 /// The angle after which a gait that turns on the spot has brought other feet to the edge, deg.
 const MAX_TURN: f64 = 180.0;
@@ -68,7 +68,7 @@ impl Crossing {
         unreachable!("every gait that is walked moves")
     }
 
-    /// The floor beyond the edge.
+    /// The block that forms the floor beyond the edge.
     pub fn block(&self, high: f64) -> Block {
         /// The size of that floor, mm.
         const SIZE: f64 = 1000.0;

@@ -1,4 +1,4 @@
-//! Pads can grip more backward than forward: the grain. Compares the speeds that the model and
+//! Pads with a grain, which grip more backward than forward. Compares the speeds that the model and
 //! MuJoCo give the gaits of `robots/grain.toml` at five ratios of friction.
 
 use std::collections::BTreeMap;

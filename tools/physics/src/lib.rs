@@ -34,10 +34,10 @@ use std::path::PathBuf;
 
 use lizard_robot::Robot;
 
-/// The files of robots/ by their names without an ending.
+/// The files of robots/ that are compared, by their names without an ending; grains have a table of their own.
 pub const ROBOTS: [&str; 4] = ["paper", "own-gaits", "large", "unequal"];
 
-/// Loads one of [`ROBOTS`].
+/// Loads a file of robots/ by its name without an ending.
 ///
 /// # Panics
 /// If its file is refused; tests of the robot crate show that none is.

@@ -1,7 +1,7 @@
-//! `make physics`: walks every gait of every file of robots/ by the contact model and by MuJoCo,
-//! and by MuJoCo those that walk over edges and blocks, the paper's also on slopes and other floors.
-//! With `--write` the new results replace the stored ones; with `--one-in N` only every N-th gait
-//! is walked.
+//! `make physics`: walks every gait of the robots of robots/ by the contact model and by MuJoCo.
+//! MuJoCo alone also walks over edges and blocks, with the paper's robot also on slopes and other
+//! floors. With `--write` the new results replace the stored ones; with `--one-in N` only every N-th
+//! gait is walked.
 
 use std::collections::BTreeMap;
 use std::process::ExitCode;
@@ -22,7 +22,7 @@ use lizard_robot::Robot;
 const TOLERANCES: (f64, f64) = (0.6, 0.4);
 /// The message for an answer without a stored one to compare.
 const NOT_KEPT: &str = "no figures are kept; `make physics WRITE=1` keeps these";
-/// The prefixes of file names of walks on other floors and with other servos.
+/// The prefixes of file names of walks on other floors, with other servos, assumptions and pads.
 const SURFACE: &str = "surface";
 const SERVOS: &str = "servos";
 const ASSUMPTIONS: &str = "assumptions";
@@ -58,7 +58,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// The file's name for a row of a robot.
+/// The name of the file for a row of a robot.
 fn name(robot: &str, index: usize) -> String {
     format!("{robot}-{index}")
 }
@@ -220,7 +220,7 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         faults.extend(changed(&pads::stored(), &by_shape));
     }
     let pads = robot(grains::ROBOT);
-    // With `--one-in` only some rows are walked, to save time: then these are left out.
+    // With `--one-in`, which saves time, these are left out.
     if one_in == 1 {
         let walked = grains::measure(&pads)?;
         println!("\nrobots/grain.toml\n{}", grains::table(&pads, &walked));

@@ -16,7 +16,7 @@ use crate::here;
 /// The reason why MuJoCo gives no answer.
 #[derive(Debug, thiserror::Error)]
 pub enum MujocoError {
-    /// Fails if Python does not start.
+    /// Python does not start.
     #[error("target/physics/bin/python does not start: {0}; `make physics` sets it up")]
     Start(io::Error),
     /// A file cannot be written, or the answer cannot be read.
@@ -28,7 +28,7 @@ pub enum MujocoError {
     /// The judge printed something else than an answer.
     #[error("tools/physics/judge.py says {0}")]
     Words(String),
-    /// MuJoCo warned of a walk.
+    /// MuJoCo warned during a walk.
     #[error("{file}: {trouble}")]
     Trouble {
         /// Robot, gait and case.
@@ -36,7 +36,7 @@ pub enum MujocoError {
         /// The judge's message.
         trouble: String,
     },
-    /// A part without a surface.
+    /// A part has no surface.
     #[error(transparent)]
     Unfit(#[from] lizard_parts::Unfit),
 }
@@ -138,7 +138,7 @@ pub(crate) fn scene_of(name: &str, assembly: &Assembly, gait: &str, case: Case) 
             rate: strut.rate,
         }),
         course: Some(Course::of(robot, gait, 2, 1)),
-        // They are only for pictures, and MuJoCo reads the file ten times as fast without them.
+        // They are only for pictures; MuJoCo reads the file ten times as fast without them.
         shapes: false,
         ..Scene::of(assembly)
     }

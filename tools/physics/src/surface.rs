@@ -17,10 +17,10 @@ use crate::mujoco::scene_of;
 use crate::table::Part;
 
 /// The names of the robots that are walked over edges and blocks: the paper's on every surface, the
-/// others on the highest.
+/// others on the highest edge and blocks.
 pub const ROBOTS: [&str; 5] = ["paper", "own-gaits", "large", "unequal", grains::ROBOT];
 
-/// A gait that moves less by a cycle, mm and deg, is not for walking: it looks around or wags.
+/// The least displacement by a cycle, mm and deg, of a gait that walks; others look around or wag.
 const WALKS: (f64, f64) = (9.0, 3.0);
 
 /// The parts of the displacement on a level floor for which a gait is made: distance, turn, or
@@ -39,7 +39,7 @@ pub(crate) fn parts(Displacement([ahead, _, turn]): Displacement) -> Vec<Part> {
 /// The gaits of a robot that walk, each with its displacement on a level floor by MuJoCo.
 ///
 /// # Panics
-/// If none of a gait is stored.
+/// If no displacement of a gait is stored.
 pub fn gaits(figures: &Figures, robot: &str) -> Vec<(String, Displacement)> {
     if robot == grains::ROBOT {
         let stored = grains::stored();
@@ -129,13 +129,13 @@ impl Surface {
                 let side = |[_, left]: [f64; 2]| if left > 0.0 { 0.4 } else { 0.8 };
                 floor.friction = robot.ground().feet.at([0.0; 4]).map(side);
             }
-            // Steel on the floor.
+            // The screw's head, of steel, on the floor.
             Self::NoPad => floor.friction[0] = 0.2,
         }
         floor
     }
 
-    /// The scene of a gait on it; `level` is the gait's displacement on a level floor.
+    /// The scene of a gait on this surface; `level` is the gait's displacement on a level floor.
     ///
     /// # Panics
     /// If the robot has no such gait.
@@ -169,8 +169,8 @@ fn mm(tenths: u8) -> f64 {
     f64::from(tenths) / 10.0
 }
 
-/// Blocks of 10 to 20 mm in places that look random and are the same each time: one in each
-/// square of 30 mm, so that they cover a quarter of the floor. None is under a foot at the start.
+/// Blocks of 10 to 20 mm at pseudo-random places, the same each time: one in each square of 30 mm,
+/// so that they cover a quarter of the floor. None is under a foot at the start.
 fn strewn_blocks(robot: &Robot, high: f64) -> Vec<Block> {
     const SQUARE: f64 = 30.0;
     const REACH: i32 = 12;
@@ -230,8 +230,8 @@ pub fn level(figures: &Figures, gait: &str) -> Displacement {
     answers.expect("figures.json has it").mujoco
 }
 
-/// The gaits that keep less than they should, each with its robot and surface: `back` of pads with a
-/// grain pushes against the grain.
+/// The gaits that are known to keep less than they should, each with its robot and surface. On pads
+/// with a grain, `back` pushes against the grain.
 pub const BELOW: [(&str, &str, Surface); 2] = [
     (grains::ROBOT, "back", Surface::Edge(20)),
     (grains::ROBOT, "back", Surface::Blocks(10)),

@@ -1,10 +1,10 @@
-//! The stored displacements as JSON that shows in a diff what has changed.
+//! The stored displacements as JSON, in lines by which a diff shows the changes.
 
 use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-/// An object with a line for each key.
+/// Writes a JSON object with a line for each key.
 ///
 /// # Panics
 /// Never: the values are names and numbers.
@@ -12,7 +12,7 @@ pub fn lines<T: Serialize>(map: &BTreeMap<String, T>) -> String {
     joined(map, |value| serde_json::to_string(value).expect("numbers")) + "\n"
 }
 
-/// An object of objects with a line for each inner key.
+/// Writes a JSON object of objects with a line for each inner key.
 ///
 /// # Panics
 /// Never: the values are names and numbers.

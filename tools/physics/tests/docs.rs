@@ -100,7 +100,7 @@ fn every_gait_keeps_its_way_over_edges_and_blocks_and_its_turn_on_every_floor() 
     let all = all.map(std::collections::BTreeMap::len);
     assert_eq!(all.sum::<usize>(), count, "and no others are kept");
     assert!(count > 100, "{count}");
-    // The rule refuses a robot that an edge stops, ahead and around, or that turns the wrong way.
+    // The rule refuses a robot that an edge keeps from moving or turning, or that turns the wrong way.
     let stopped = Displacement([0.0; 3]);
     for (gait, losses) in [("walk", 1), ("back", 1), ("left", 1), ("arc-right", 2)] {
         let level = surface::level(&figures, gait);

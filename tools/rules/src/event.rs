@@ -73,7 +73,7 @@ pub enum Event<'a> {
     },
     /// A line that was sent at this time was not answered.
     Unanswered(Time, &'a str),
-    /// A line of the robot, answers included, and the time at which its first byte was written.
+    /// A line that the robot printed, answers included, and the time at which its first byte was written.
     Printed(Time, &'a str),
     /// A pulse begins.
     Pulse(Pulse),

@@ -4,11 +4,11 @@
 //! The model checker (`tools/explore`), the search for trouble on the simulated UNO
 //! (`make trouble`) and the search for harmful bytes (`tools/fuzz`) test the same promises.
 //! Each turns what its robot does into a sequence of [`Event`]s with their times, and the
-//! [`Observer`] judges them. It knows nothing of the robot's intentions: only lines,
+//! [`Observer`] judges them. It knows nothing of the robot's inner state: only lines,
 //! pulses, resets, the supply and what is written to the EEPROM.
 //!
-//! A rule that needs more than that is in the same list, [`Rule`], and is checked by the
-//! apparatus that can look inside.
+//! A rule that needs more than that is in the same list, [`Rule`], and is checked by the tools
+//! that see the inner state.
 
 mod answers;
 mod event;

@@ -49,7 +49,7 @@ impl Reports {
         }
     }
 
-    /// Ends a stop by an order to move, which may have been lost unless it is sure.
+    /// Ends a stop because of an order to move, which may have been lost unless `is_sure`.
     pub(crate) const fn order(&mut self, is_sure: bool) {
         let was_reported = self.stopped.is_some() && self.is_reported;
         self.may_still_be_stopped = !is_sure && (was_reported || self.may_still_be_stopped);
@@ -58,7 +58,7 @@ impl Reports {
 }
 
 impl Observer {
-    /// A line of the robot.
+    /// Judges a line that the robot printed; `since` is the time of its first byte.
     pub(crate) fn judge_line(&mut self, since: Time, line: &str) {
         // After a reset the banner follows the part of a line that was cut off.
         if is_final(line) && !line.contains("# lizard ") {
@@ -67,7 +67,7 @@ impl Observer {
                 self.fail(Rule::OneAnswer, format!("unasked: {line}"));
             }
             if self.lines > 0 {
-                // The next one may have waited until this answer was written.
+                // The next command may have waited until this answer was written.
                 self.command_read = self.now;
             }
         }
@@ -76,7 +76,7 @@ impl Observer {
             self.reports.is_reported = true;
             self.reports.reported_at = self.now;
             if line.contains("no line for") {
-                // One that an order has overtaken is over already.
+                // A stop that an order has overtaken is over already.
                 if since - self.ordered >= self.limits.queued {
                     self.reports.stop(self.now);
                 }
@@ -104,13 +104,13 @@ impl Observer {
             self.permission.note_boot(self.now, boot);
         }
         let is_end = line.ends_with("pulses ended") || line.contains("several times in a row");
-        // An order that came while it was printed has overtaken it.
+        // An order that came while the line was being printed has overtaken it.
         if is_end && since > self.ordered {
             self.permission.end(self.now);
         }
     }
 
-    /// Notes what the answer to a line that was carried out means for `deadman`.
+    /// Updates the `deadman` time and the flag for a driven robot from the answer to a line that was carried out.
     pub(crate) fn note_done(&mut self, answer: &str) {
         let Some(done) = answer.strip_prefix("ok ") else {
             return;

@@ -4,7 +4,7 @@ use crate::event::{MS, NEVER, Time};
 use crate::observer::Observer;
 use crate::rule::Rule;
 
-/// Distance of a good supply from its first level, mV.
+/// Margin by which a good supply is above its first level, mV.
 pub(crate) const GOOD_ABOVE: u32 = 200;
 
 /// Time for which a supply must be low before the robot may report it: six frames, less one before

@@ -1,6 +1,6 @@
-//! Waits with a time limit. A test that waits for another program, a port or a thread
-//! hangs if that never answers, and so does the whole run. Here every wait
-//! has a limit, after which the test fails with a message that names the missing event.
+//! Waits with a time limit. A test that waits for another program, a port or a thread that never
+//! answers would hang, and with it the run of all tests. Here every wait has a limit, after which
+//! the test fails with a message that names the missing event.
 //!
 //! The limit does not measure speed: a machine may be busy, and only a test that hangs
 //! should fail. All waits use one limit, [`LIMIT`]. Do not use it outside of tests, or to
@@ -61,7 +61,7 @@ impl TimeLimit {
     /// Waits until the condition holds.
     ///
     /// # Panics
-    /// It does not hold within the limit; `what` completes the message `waited 300s for`.
+    /// If it does not hold within the limit; `what` completes the message `waited 300s for`.
     #[track_caller]
     pub fn expect(self, what: &str, condition: impl FnMut() -> bool) {
         assert!(self.wait_for(condition), "waited {self} for {what}");
@@ -71,7 +71,7 @@ impl TimeLimit {
     /// thread of its own, which continues until the test program ends if the limit is reached first.
     ///
     /// # Panics
-    /// It does not return within the limit, see [`TimeLimit::expect`]; or it panics.
+    /// If it does not return within the limit, see [`TimeLimit::expect`]; or if it panics.
     #[track_caller]
     pub fn within<T: Send + 'static>(
         self,

@@ -1,5 +1,5 @@
 //! Waits that hang fail with a message, and all other waits succeed.
-#![cfg(unix)] // by the programs that are everywhere there
+#![cfg(unix)] // the programs that these tests start are on every Unix
 
 use std::io::ErrorKind;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -11,7 +11,7 @@ use lizard_time_limit::{LIMIT, TimeLimit};
 
 const SHORT: TimeLimit = TimeLimit::new(Duration::from_millis(100));
 
-/// The message with which this fails.
+/// The message of the panic in which this ends.
 fn panic_message<T>(wait: impl FnOnce() -> T) -> String {
     let panic = catch_unwind(AssertUnwindSafe(wait))
         .err()

@@ -25,7 +25,7 @@ interface Bluetooth {
   requestDevice(options: { filters: object[]; optionalServices: (number | string)[] }): Promise<Device>;
 }
 
-/** The serial lines that modules offer: the HM-10 and its copies, and Nordic's. */
+/** The serial services of modules, with a characteristic for each direction: those of the HM-10 and of Nordic. */
 const LINES = [
   { service: 0xffe0, to: 0xffe1, from: 0xffe1 },
   {
@@ -34,7 +34,7 @@ const LINES = [
     from: '6e400003-b5a3-f393-e0a9-e50e24dcca9e',
   },
 ];
-/** The beginnings of the names of modules that do not say which service they have. */
+/** The prefixes of the names of modules that do not advertise their service. */
 const NAMES = ['HM', 'BT05', 'MLT-BT05', 'CC41', 'AT-09', 'JDY'];
 /** The largest number of bytes in a packet. */
 const PACKET = 20;
@@ -142,7 +142,7 @@ export class BluetoothLink implements Link {
     }
   }
 
-  /** No radio resets a board. */
+  /** Does nothing: a Bluetooth module cannot reset a board. */
   async reset(): Promise<void> {}
 
   wait(ms: number): Promise<void> {

@@ -86,12 +86,12 @@ export class Dialogue {
   /** Pending while further answers to repeated `stop` lines may come, which belong to no other line. */
   private echoes: Promise<void> | null = null;
   private isSilent = false;
-  /** The line that is sent repeatedly beside all others. */
+  /** The line that is sent repeatedly, in addition to all others. */
   private repeated: { line: string } | null = null;
   /** The expected answer to that line. */
   private repeatedAnswer = '';
   private notes: string[] = [];
-  /** True while the line serves another purpose. */
+  /** True while something else uses the line, such as the boot loader. */
   over = false;
 
   constructor(
@@ -154,7 +154,7 @@ export class Dialogue {
     }
   }
 
-  /** Sends a line every `every` ms, beside all others and without waiting for its answer; null ends that. */
+  /** Sends a line every `every` ms, in addition to all others and without waiting for its answer; null ends that. */
   keepAlive(line: string | null, every = 0): void {
     const repeated = (this.repeated = line === null ? null : { line });
     if (!repeated) return;
@@ -172,7 +172,7 @@ export class Dialogue {
     this.stop = null;
     this.listener.stopping(false);
     this.hears();
-    // Answers come in order: that of the line before has been lost.
+    // Answers come in order, so the answer to the previous line has been lost.
     const { pending: asked } = this;
     this.pending = null;
     asked?.failed(new DroppedQuestion());

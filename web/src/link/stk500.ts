@@ -26,10 +26,10 @@ const FLASH_SIZE = 32 * 1024;
 const TIMEOUT = 2000;
 /** Time after a reset in which the boot loader blinks and does not listen, ms. */
 const BLINKING_TIME = 400;
-/** Attempts to reach it in the rest of its second, in which it listens, and the time for each, ms. */
+/** Attempts to reach the boot loader in the rest of its second, in which it listens, and the time for each, ms. */
 const ATTEMPTS = 5;
 const ATTEMPT_TIME = 110;
-/** Time within which a late answer has arrived, ms. */
+/** Time within which the late answer to an earlier attempt has arrived, ms. */
 const LATE_TIME = 40;
 
 export type Progress = (done: number, of: number, what: 'comparing' | 'writing' | 'verifying') => void;
@@ -131,13 +131,13 @@ export async function identify(link: Link): Promise<void> {
   await loader.command([LEAVE]);
 }
 
-/** Bytes of flash and their address, which is that of a page. */
+/** Bytes of flash and their address, the start of a page. */
 export interface Piece {
   at: number;
   bytes: Uint8Array;
 }
 
-/** Fills the last page with the bytes of erased flash. */
+/** Returns the bytes in whole pages, the last one filled with the bytes of erased flash. */
 function inPages({ bytes }: Piece): Uint8Array {
   const pages = new Uint8Array(Math.ceil(bytes.length / PAGE) * PAGE).fill(0xff);
   pages.set(bytes);

@@ -1,19 +1,19 @@
-// Drives gaits one after another before a camera, keeps the robot on the sheet, and keeps when it walked each of them. Anything
-// else that the robot does meanwhile ends it: Stop, another gait, a cut link.
+// Drives gaits one after another in front of a camera, keeps the robot on the sheet, and records when it walks each
+// of them. Anything else that the robot does meanwhile ends the protocol: Stop, another gait, a broken link.
 import { DONE, GAITS, WORDS } from '../words';
 import type { Back } from './seen';
 
-/** Cycles of a way back at most, the ways tried, and the largest part of one that may lead aside. */
+/** Most cycles of a walk back, most attempts, and the least share of the distance that must lie ahead or behind. */
 const BACK = { cycles: 12, tries: 2, aside: 0.7 };
-/** Least way of a cycle of a gait that leads back, mm, and its largest turn, deg. */
+/** Least distance per cycle of a gait that leads back, mm, and its largest turn, deg. */
 const LEADS = { way: 3, turn: 2 };
-/** Distance from the middle from which a longer gait is begun, if that helps, mm. */
+/** Distance from the middle beyond which the robot first returns, if the next walk would leave the sheet, mm. */
 const MIDDLE = 80;
-/** Way outward near the end at which a walk is ended, mm: a gait swings within its cycle. */
+/** Distance outward near the end of the sheet that ends a walk, mm; not less, as a gait swings within its cycle. */
 const OUTWARD = 20;
 /** Time for which the robot may walk unseen, s. */
 const UNSEEN = 2;
-/** Least cycles of a walk: the first and the last one are not measured. One that is cut earlier counts as so many, so that it ends. */
+/** Least cycles of a walk: the first and the last are not measured. A walk cut earlier counts as this many. */
 export const FEWEST = 4;
 
 /** A gait that the robot walked, on the film's clock. */
@@ -33,7 +33,7 @@ export interface Way {
 export interface Plan {
   /** The gaits, each with the time of a cycle at full speed, s. */
   gaits: { command: string; period: number }[];
-  /** Cycles of each: what the end of the sheet cuts off is walked once the robot is back. */
+  /** Cycles of each gait. Those that the end of the sheet cuts off are walked once the robot is back. */
   cycles: number;
   /** Percent. */
   speed: number;
@@ -49,17 +49,17 @@ export interface Stage {
   now: () => number;
   /** Waits some seconds. */
   wait: (seconds: number) => Promise<void>;
-  /** The ways of all gaits that are known. */
+  /** Returns the predicted movements of the gaits, as far as they are known. */
   ways: () => Way[];
-  /** Has a person put the robot back; resolves when that is done, or when the protocol is over. */
+  /** Asks a person to put the robot back; resolves when that is done, or when the protocol is over. */
   putBack: () => Promise<void>;
   say: (text: string) => void;
 }
 
-/** Thrown where the robot did something else than the protocol. */
+/** Thrown if the robot does something other than the protocol. */
 export class Interrupted extends Error {}
 
-/** A gait under way. */
+/** A walk that has not ended yet. */
 interface Waiting {
   gait: string;
   /** The robot's least distance from the middle so far, mm; null until the robot has taken the gait. */
@@ -77,18 +77,18 @@ const distance = ({ ahead, aside }: Back) => Math.hypot(ahead, aside);
 export class Protocol {
   readonly walks: Walk[] = [];
   private waiting: Waiting | null = null;
-  /** The protocol's own last line. */
+  /** The last line that the protocol has sent. */
   private own = '';
-  /** Called when it is over. */
+  /** Called when the protocol is over. */
   onEnd: () => void = () => {};
-  /** The reason why it is over, or null. */
+  /** The reason why the protocol is over, or null. */
   private over: Interrupted | null = null;
   /** The robot's last place, and its time on the film's clock, s. */
   private last: { back: Back; seconds: number } | null = null;
 
   constructor(private readonly stage: Stage) {}
 
-  /** Walks all gaits. Throws {@link Interrupted}, and then the walks so far are still there. */
+  /** Walks all gaits. Throws {@link Interrupted}; the walks so far are kept. */
   async run({ gaits, cycles, speed, pause }: Plan): Promise<void> {
     const { stage } = this;
     await this.ask(`${WORDS.speed} ${speed}`);
@@ -105,7 +105,7 @@ export class Protocol {
     await this.wait(pause);
   }
 
-  /** Takes the robot's place in a picture, if it shows one. Ends a walk that leads off the sheet. */
+  /** Takes the robot's place in a picture, null if it shows none. Ends a walk that leads off the sheet. */
   look(back: Back | null): void {
     if (!back) return;
     this.last = { back, seconds: this.stage.now() };
@@ -122,7 +122,7 @@ export class Protocol {
     else if (line !== this.own && this.stage.ways().some(walks)) this.end(`the robot was sent "${line}"`);
   }
 
-  /** Takes a line of the robot; the one at the end of a gait comes before its new activity. */
+  /** Takes a line that the robot printed; the line at the end of a gait comes before the new activity. */
   received(line: string): void {
     if (line !== DONE || !this.waiting) return;
     this.finish(this.waiting);
@@ -138,14 +138,14 @@ export class Protocol {
     this.end(activity === '' ? 'the link to the robot was cut, or it was reset' : `the robot does "${activity}"`);
   }
 
-  /** Ends it for a reason from outside, as when the camera is off, and stops a robot that walks. */
+  /** Ends the protocol for an external reason, such as a camera that is off, and stops a robot that walks. */
   stop(why: string): void {
     const walks = this.waiting !== null;
     this.end(why);
     if (walks) void this.stage.ask(WORDS.stop);
   }
 
-  /** Ends it: nothing more is sent. */
+  /** Ends the protocol: nothing more is sent. */
   end(why: string): void {
     this.over ??= new Interrupted(why);
     if (this.waiting) this.finish(this.waiting, this.over);
@@ -159,8 +159,8 @@ export class Protocol {
   }
 
   /**
-   * Brings the robot back from the end of the sheet: by a gait that leads to the middle, or else by hand. From a place that is
-   * only too near for the way ahead, mm, it goes to the middle if a gait leads there.
+   * Brings the robot back from the end of the sheet: by a gait that leads to the middle, or else by hand. If only the
+   * next walk, of `way` mm, would leave the sheet, the robot goes to the middle if a gait leads there.
    */
   private async goBack(way: number): Promise<void> {
     for (let n = 0; ; n++) {
@@ -178,7 +178,7 @@ export class Protocol {
     }
   }
 
-  /** The gait that goes farthest ahead, or back, and hardly turns. */
+  /** The gait that goes farthest ahead or back, by the sign of `ahead`, and hardly turns. */
   private toward(ahead: number): Way | null {
     const way = ({ forward, turn }: Way) => (Math.abs(turn) < LEADS.turn ? forward * Math.sign(ahead) : 0);
     const [best] = this.stage.ways().sort((a, b) => way(b) - way(a));
@@ -190,7 +190,7 @@ export class Protocol {
     const { stage } = this;
     const waiting: Waiting = { gait, nearest: null, isCut: false, end: null, done: () => {}, fail: () => {} };
     const walked = new Promise<void>((done, fail) => Object.assign(waiting, { done, fail }));
-    // It may be over before the answer.
+    // It may fail before anything waits for it.
     walked.catch(() => {});
     this.waiting = waiting;
     const begin = stage.now();

@@ -1,5 +1,5 @@
-// A drive as the steps of a routine, from the robot's reports: its gaits, its pace, the phase of its cycle. Moments are
-// in seconds of `Session.clock`.
+// Records a drive as the steps of a routine, from the robot's reports of its gait, pace and phase of the cycle. Times
+// are in seconds of `Session.clock`.
 import type { Gait } from '../robot';
 import { GAITS, WORDS } from '../words';
 

@@ -22,7 +22,7 @@ const linkKey = (n: number) => `links.l${n}`;
 const round = (mm: number) => Math.round(mm * 2) / 2;
 const distance = ([x, y]: Point, [u, v]: Point) => Math.hypot(x - u, y - v);
 
-/** Distance of a point from another along the direction to a third. */
+/** Distance of `to` from `from` along the direction to `towards`. */
 function along(from: Point, towards: Point, to: Point): number {
   const length = distance(from, towards) || 1;
   return ((towards[0] - from[0]) * (to[0] - from[0]) + (towards[1] - from[1]) * (to[1] - from[1])) / length;

@@ -50,7 +50,7 @@ export class Floor {
   unseen = false;
   /** The last drawn frame, for a picture as PNG or SVG. */
   private shown: [Plate, Frame | null, Frame | null] | null = null;
-  /** All that the picture on the canvas depends on, but for the colours; empty if it must be painted. */
+  /** Everything that the picture on the canvas depends on, except the colours; empty if it must be painted again. */
   private painted = '';
   private readonly touches = new Map<number, Touch>();
   /** True while the pointer drags the floor. */
@@ -214,7 +214,7 @@ export class Floor {
 
   private ruler(pen: CanvasRenderingContext2D, height: number): Label {
     const length = [10, 50, 100, 500].find((mm) => mm * this.zoom > 50) ?? 1000;
-    // Beside the stick.
+    // To the right of the stick.
     const [x, y] = [124, height - 18];
     pen.strokeStyle = palette().ink;
     pen.lineWidth = 1.5;

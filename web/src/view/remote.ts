@@ -11,7 +11,7 @@ export class Remote {
 
   constructor() {
     this.button.addEventListener('click', () => void (this.isOn ? this.leave() : this.enter()));
-    // The system's own gesture also ends it.
+    // The system's own gesture for leaving full screen also ends the remote.
     document.addEventListener('fullscreenchange', () => !document.fullscreenElement && this.show(false));
     // The lock is lost while the page is hidden.
     document.addEventListener('visibilitychange', () => !document.hidden && this.isOn && void this.keepLight());

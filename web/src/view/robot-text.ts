@@ -46,7 +46,7 @@ export class RobotText {
     opener.addEventListener('change', () => {
       const file = opener.files?.[0];
       if (file) void this.open(file);
-      // The same file may be chosen once more.
+      // Otherwise the same file could not be chosen again.
       opener.value = '';
     });
     document.addEventListener('dragover', (event) => {
@@ -165,7 +165,7 @@ export class RobotText {
     }
   }
 
-  /** Shows the link to the robot as a QR code, or puts it away. */
+  /** Shows the link to the robot as a QR code, or hides it. */
   private async showCode(): Promise<void> {
     const drawn = element('robot-drawn');
     const isShown = drawn.childElementCount === 0;

@@ -90,7 +90,7 @@ export class Steer {
   private isAway = false;
   /** The gait that was sent last; null while nothing is held. */
   private walking: string | null = null;
-  /** The pace to go back to, percent, while a stick asks for half of it. */
+  /** The pace to restore, percent, while a stick asks for half of it. */
   private fullPace: number | null = null;
 
   /** Takes functions that list the robot's gaits, that send a line, that say when nobody may drive, and the robot's pace, percent. */
@@ -119,7 +119,7 @@ export class Steer {
     for (const end of ['pointerup', 'pointercancel'] as const) this.stick.addEventListener(end, () => this.drag(null));
   }
 
-  /** Reads the gamepads; called in every picture. */
+  /** Reads the gamepads; called for every frame of the page. */
   readGamepads(): void {
     const pads = (navigator.getGamepads?.() ?? []).filter((pad) => pad !== null);
     const direction = { ahead: 0, left: 0 };
@@ -146,7 +146,7 @@ export class Steer {
     this.follow();
   }
 
-  /** Releases everything that is held; `stops` sends what follows from that. */
+  /** Releases everything that is held; if `stops`, also stops a robot that walks by it. */
   release(stops = true): void {
     this.held.clear();
     this.atPad = { ahead: 0, left: 0 };

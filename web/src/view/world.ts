@@ -96,7 +96,7 @@ export class World {
     this.show(this.volts, this.volts.valueAsNumber.toFixed(2));
   }
 
-  /** A box to tick for each input of the robot: in the simulation its contact is closed as long as the box is ticked. */
+  /** Shows a checkbox for each input of the robot: its simulated contact is closed while the box is ticked. */
   private showInputs(): void {
     const { description, closed } = this.session();
     const boxes = description.inputs.map(([name]) => {

@@ -39,11 +39,10 @@ fn cost(pads: &Pads, displacement: &Displacement) -> f64 {
     friction + pads.compliance.map_or(0.0, energy)
 }
 
-/// Proves a lower bound by duality: forces within the pads' friction that balance
-/// each other do at least `sum f . swing` of work, whatever the body does, less
-/// what their torques can gain on the springs. The forces at a displacement, if they
-/// balance, prove how far its cost is from the least. Returns their imbalance
-/// and that distance.
+/// Proves a lower bound by duality: forces within the pads' friction that balance each other do at least
+/// `sum f . swing` of work for any movement of the body, minus what their torques can gain on the springs. So
+/// the forces at a displacement, if they balance, bound the difference of its cost from the minimum. Returns
+/// their imbalance and that bound.
 fn certificate(pads: &Pads, displacement: &Displacement) -> ([f64; 3], f64) {
     let eps = largest(&pads.swing) * MIN_ROUNDING;
     let (mut work, mut net) = (0.0, [0.0; 3]);
@@ -80,8 +79,8 @@ fn assert_least(pads: &Pads) {
 
 #[test]
 fn a_near_tie_of_two_feet_against_two_is_decided_correctly() {
-    // A sine walk: at each instant two legs go one way about as fast as two
-    // go the other, so that only lever arms decide.
+    // A sine walk: at each instant two legs move in one direction about as fast as two in the other, so that
+    // only lever arms decide.
     for step in 0..1000 {
         let (from, to) = (f64::from(step), f64::from(step + 1));
         let foot = |i: usize, step: f64| {

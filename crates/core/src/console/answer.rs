@@ -1,4 +1,4 @@
-//! Answers: what the robot replies to a line.
+//! Answers: the robot's replies to a line.
 //!
 //! Every line gets exactly one final line, `ok ...` or `err <code> <reason>`; some
 //! answers have other lines before it.
@@ -22,8 +22,8 @@ pub enum Answer {
     HelpHint,
     /// The end of help, `ok help`.
     HelpDone,
-    /// `ok`, the motion and its pose; the next answer continues the line. It is written in
-    /// three parts, so that a frame waits for one of them at most.
+    /// `ok`, the motion and its pose; the next answer continues the line. It is written in three parts, so that
+    /// a frame is delayed by at most one of them.
     Status,
     /// The margin, whose measurement takes most of a frame; the pace; the frame count.
     StatusMargin,
@@ -42,6 +42,6 @@ pub enum Answer {
 pub struct Counters {
     /// Pulse edges that came late.
     pub late: u16,
-    /// Bytes received and lost.
+    /// Received bytes that were lost.
     pub rx_lost: u16,
 }

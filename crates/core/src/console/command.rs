@@ -58,10 +58,10 @@ pub const MAX_WATCH_FRAMES: u16 = 10_000;
 /// The largest count of cycles that a gait accepts.
 pub const MAX_CYCLES: u16 = 999;
 
-/// The longest time that `deadman` allows, a minute.
+/// The longest time that `deadman` allows, ms: a minute.
 pub const MAX_DEADMAN_MS: u16 = 60_000;
 
-/// The largest angle, a turn either way: a larger one is taken for a mistake.
+/// The largest angle: one turn in either direction. A larger one counts as a mistake.
 const MAX_CENTIDEG: u16 = TURN_CENTIDEG as u16;
 
 /// The syntax of an argument.
@@ -83,11 +83,11 @@ enum Syntax {
 struct Form {
     /// True if the first argument is a servo's number.
     takes_servo: bool,
-    /// The number of arguments after it.
+    /// The number of arguments after the servo.
     count: u8,
-    /// The syntax of each of them.
+    /// The syntax of each of these arguments.
     syntax: Syntax,
-    /// The range of each, without its sign.
+    /// The range of each of these arguments, without its sign.
     min: u16,
     max: u16,
     /// The message for arguments that do not match this form.
@@ -279,9 +279,8 @@ impl<'a> Words<'a> {
     }
 }
 
-/// Finds the gait of this name, and reads the number of cycles after it; 0 without one. Any
-/// blanks between words are accepted. If one gait's name is another's and a number, the longer
-/// name counts.
+/// Finds the gait of this name, and reads the number of cycles after it; 0 without one. Any blanks between
+/// words are accepted. If a gait's name is that of another gait and a number, the longer name counts.
 #[inline(never)]
 fn gait(line: &[u8], robot: &Robot) -> Result<(GaitId, u16), Misread> {
     let line = line.trim_ascii_start();
@@ -370,7 +369,7 @@ fn number_of(word: &[u8], syntax: Syntax) -> Option<(u16, bool)> {
 /// Appends a digit to a number; saturates at 65535.
 #[inline(never)]
 fn append(number: u16, digit: u8) -> u16 {
-    // 6553 and one more digit is where sixteen bits may end.
+    // 6553 followed by a digit may exceed sixteen bits.
     if number < 6553 {
         number * 10 + u16::from(digit)
     } else {

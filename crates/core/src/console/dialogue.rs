@@ -72,7 +72,7 @@ impl Console {
         }
     }
 
-    /// Begins at this rate of the serial line.
+    /// Sets the rate with which the serial line starts.
     pub const fn begin(&mut self, rate: Rate) {
         self.rate_finder = RateFinder::new(rate);
     }
@@ -84,20 +84,21 @@ impl Console {
         self.silence = self.silence.saturating_add(FRAME_MS);
         let deadman = control.deadman();
         if deadman != 0 && self.silence >= deadman {
-            // A link that broke within `walk 12`: noise, minutes later, would end `walk 1`.
+            // If the link breaks within `walk 12`, noise that comes later must not complete the line as
+            // `walk 1`.
             self.line.garble_unfinished();
         }
         if self.has_output(control) {
             self.rate_finder.note_unread();
         }
         let rate = self.rate_finder.end_frame()?;
-        // The next line end may end a line that began at the rate before.
+        // The next line end may end a line that began at the previous rate.
         self.line.push(GARBLED);
         Some(rate)
     }
 
-    /// True while a line waits to be written. No byte is to be passed on
-    /// meanwhile: the answer may still need the line it answers.
+    /// True while a line waits to be written. Meanwhile the caller passes no byte on, since the answer may
+    /// still need the line that it answers.
     pub const fn has_output(&self, control: &Control) -> bool {
         self.next_pending(control).is_some()
     }
@@ -138,7 +139,8 @@ impl Console {
             return Err(Answer::Refused(Refusal::NoRobot));
         }
         let command = command.map_err(Answer::Misread)?;
-        // Noise or the rest of a line comes from nobody, so `deadman` ignores it.
+        // Only a valid command shows that somebody is at the other end, so `deadman` ignores noise and parts of
+        // lines.
         control.note_command();
         Ok(match command {
             Command::Help => Some(Answer::HelpGaits(GaitId::STAND)),
@@ -163,10 +165,9 @@ impl Console {
         });
     }
 
-    /// Writes one waiting line, if any, at most [`LONGEST_LINE`] bytes: the banner, once after
-    /// power-on; an answer or a part of it; a notice; the reason why the guard holds
-    /// the robot; or the pose report of `watch`. The longest line, `status`, is written
-    /// in parts, one with each call.
+    /// Writes one waiting line, if any, at most [`LONGEST_LINE`] bytes: the banner, once after power-on; an
+    /// answer or a part of it; a notice; the reason why the guard holds the robot; or the pose report of
+    /// `watch`. The longest line, `status`, is written in parts, one per call.
     #[inline(never)]
     pub fn write_line(&mut self, control: &mut Control, out: &mut impl Output, counters: Counters) {
         match self.next_pending(control) {

@@ -9,7 +9,7 @@ use crate::numbers::pose::Pose;
 use crate::numbers::robot::Robot;
 use crate::numbers::units::Sine;
 
-/// Prints bytes of seven bits as they are.
+/// Prints ASCII bytes; clears the highest bit of each.
 pub fn ascii(out: &mut impl Output, bytes: impl Iterator<Item = u8>) {
     for byte in bytes {
         out.byte(byte & 0x7f);
@@ -100,7 +100,7 @@ mod tests {
         text
     }
 
-    /// The same with the standard library: digits, and a point before the last.
+    /// The expected text, made with the standard library.
     fn expected(value: u32, decimals: usize) -> String {
         let digits = format!("{value:0>width$}", width = decimals + 1);
         let (whole, rest) = digits.split_at(digits.len() - decimals);

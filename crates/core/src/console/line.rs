@@ -68,7 +68,7 @@ impl Line {
         }
     }
 
-    /// Makes a line garbled that has begun, more than with blanks, and not ended.
+    /// Marks an unfinished line as garbled, unless it is empty or blank.
     pub fn garble_unfinished(&mut self) {
         self.is_garbled |= !self.has_ended && !self.text().is_empty();
     }
@@ -122,7 +122,7 @@ mod tests {
         let mut lines = Vec::new();
         for line in bytes.split(|byte| matches!(byte, b'\r' | b'\n')) {
             let mut typed = String::new();
-            // Or garbled.
+            // True for a garbled line, too.
             let mut too_long = false;
             for byte in line {
                 match byte {

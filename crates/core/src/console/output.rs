@@ -1,12 +1,13 @@
-//! The place that text is written to: any writer of `ufmt` that cannot fail.
+//! The destination of printed text: any `ufmt` writer that cannot fail.
 
 use core::convert::Infallible;
 
 use ufmt::uWrite;
 
-/// A serial line, or a string on a host. Writing cannot fail: a serial line waits.
+/// A destination of text: a serial line, or a string on a host. Writing cannot fail, since a serial line waits
+/// for room.
 pub trait Output {
-    /// Writes a character, of which the robot prints ASCII only.
+    /// Writes an ASCII character.
     fn byte(&mut self, byte: u8);
 }
 

@@ -94,7 +94,7 @@ fn print_range(servo: Servo, reach: &Reach, motion: &Motion, out: &mut impl Outp
     field(out, Text::Dots, neutral.swept(reach.max).centideg())
 }
 
-/// Prints what is wrong with a pose: the margin or the travel, and its limit.
+/// Prints the hazard of a pose: the travel, margin or stroke, with its limit.
 #[inline(never)]
 pub fn print_hazard(hazard: Hazard, motion: &Motion, out: &mut impl Output) {
     let robot = motion.robot();
@@ -145,7 +145,7 @@ pub fn print_hazard(hazard: Hazard, motion: &Motion, out: &mut impl Output) {
     }
 }
 
-/// Prints the travel from nominal of a slider's length, after `text`.
+/// Prints `text`, then the difference of a slider's length from nominal, mm.
 #[inline(never)]
 fn print_stroke(text: Text, length: u16, side: Side, robot: &Robot, out: &mut impl Output) {
     text.print(out);

@@ -1,9 +1,8 @@
 //! Every message that the robot prints, kept in flash.
 //!
-//! A string literal of an AVR program is copied to its 2 KiB of RAM at start. The
-//! messages here stay in flash and are packed: a character has a code of four or eight
-//! bits, and so has a phrase that several messages share. They are unpacked one by one
-//! when they are printed.
+//! A string literal of an AVR program is copied to its 2 KiB of RAM at start. The messages here stay in flash
+//! and are packed: a character has a code of four or eight bits, and so has a phrase that several messages
+//! share. A message is unpacked while it is printed.
 
 use lizard_avr::flash;
 
@@ -189,7 +188,7 @@ const PHRASES: &[&str] = &[
     "he",
 ];
 
-/// Every character of the messages, the commonest first.
+/// Every character of the messages, the most frequent first.
 const ALPHABET: &[u8; 45] = b" eotsarnldipmgcw0uh.=fb:vk1y2-,x6#z?_3+54'789";
 
 /// The number of characters with a code of four bits; no longer code begins with one of
@@ -201,7 +200,7 @@ const COUNT: usize = MESSAGES.len();
 /// The number of packed strings: the messages first, then the phrases.
 const STRINGS: usize = COUNT + PHRASES.len();
 
-/// Strings in a block: only the start of each block is stored, besides each string's length.
+/// Number of strings in a block. Stored are only the start of each block and the length of each string.
 const BLOCK_STRINGS: usize = 16;
 
 const PACKED: Packed = pack();
@@ -299,7 +298,7 @@ struct Packed {
     blocks: [u16; STRINGS.div_ceil(BLOCK_STRINGS)],
 }
 
-/// The size of the compiler's buffer, in bytes: more than the strings need.
+/// The size of the buffer used at compile time, in bytes: more than the strings need.
 const BUFFER_BYTES: usize = 4096;
 
 impl Packed {
@@ -321,8 +320,7 @@ impl Packed {
     }
 }
 
-/// Packs all strings, in the compiler: messages with codes for phrases, and the phrases letter
-/// by letter.
+/// Packs all strings, at compile time: messages with codes for phrases, and the phrases letter by letter.
 #[allow(long_running_const_eval, reason = "a second at most")]
 const fn pack() -> Packed {
     let mut packed = Packed {

@@ -12,7 +12,7 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// Reports once every so many frames, the first after as many.
+    /// Makes a timer that reports once every `interval_frames` frames, first after as many; 0 for never.
     pub(super) const fn new(interval_frames: u16) -> Self {
         Self {
             interval_frames,

@@ -198,7 +198,7 @@ mod tests {
         }
     }
 
-    /// Checks that the list has all words but those left out.
+    /// Checks that the list has all words except those left out.
     fn assert_lists_all_but<const YIELDING: usize>(robot: &Robot, left_out: &[Word]) {
         let words = Word::ALL.iter().filter(|word| !left_out.contains(word));
         let words: Vec<&str> = words.map(|word| word.text()).collect();

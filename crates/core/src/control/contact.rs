@@ -3,9 +3,9 @@
 //! Contacts bounce for some milliseconds, and long wires pick up noise. So a level counts once
 //! it has held for three successive frames, at most 60 ms after it began.
 //!
-//! A button that is stuck must not start the robot. So a wait for a contact ends when it closes, and
-//! not because it is closed: it must have been open since the wait began. A step that
-//! goes on until there is an obstacle also has to end if the obstacle is there already.
+//! A button that is stuck must not start the robot. So a wait ends only when its contact closes: the contact
+//! must have been open since the wait began. A step that goes on until there is an obstacle also has to end if
+//! the obstacle is there already.
 
 use crate::numbers::gaits::Input;
 
@@ -30,7 +30,7 @@ impl Contact {
         history: 0,
     };
 
-    /// A contact that has to close, from open.
+    /// A contact that must be open first, and then close.
     pub const fn closing(input: Input) -> Self {
         Self {
             input,
@@ -38,7 +38,7 @@ impl Contact {
         }
     }
 
-    /// A contact that has to be closed.
+    /// A contact that must be closed, even if it has been closed from the start.
     pub const fn closed(input: Input) -> Self {
         Self { input, history: 0 }
     }
@@ -61,7 +61,7 @@ mod tests {
 
     use super::*;
 
-    /// The frames in which a contact with these levels, `#` for closed, has closed.
+    /// The frames in which a contact counts as closed, for these levels; `#` is a closed one.
     fn closes(mut contact: Contact, levels: &str) -> Vec<usize> {
         let frames = levels.bytes().enumerate();
         let closed = frames.filter(|(_, level)| contact.frame(*level == b'#'));

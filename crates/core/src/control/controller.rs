@@ -62,7 +62,7 @@ pub struct Control {
     routine: Routine,
     /// The contact that the last step of a routine waited for.
     contact: Contact,
-    /// True if `boot` has begun what is under way, and no command has come since.
+    /// True if `boot` started the current activity, and no command has come since.
     is_unattended: bool,
     /// The EEPROM operation that an order has started.
     job: Option<Job>,
@@ -197,7 +197,7 @@ impl Control {
         self.safety.is_lit()
     }
 
-    /// Time without a command after which a gait ends, ms; 0: never.
+    /// Time without a command after which a gait ends, ms; 0 for never.
     pub fn deadman(&self) -> u16 {
         self.settings.deadman()
     }
@@ -229,13 +229,13 @@ impl Control {
         self.safety.note_printed(notice);
     }
 
-    /// The voltage of the supply that allows less.
+    /// The voltage of the supply that restricts the robot more.
     #[inline(never)]
     pub fn voltage(&self) -> Voltage {
         self.safety.supply().worst(&self.motion.robot().supplies())
     }
 
-    /// The present activity: a routine that is under way, unless it rests, else the motion's.
+    /// The present activity: the running routine, unless it rests; otherwise the motion's.
     pub fn activity(&self) -> Activity {
         if self.routine.is_under_way() && !self.motion.is_resting() {
             Activity::Gait(self.routine.id)
@@ -265,7 +265,7 @@ impl Control {
         }
         let state = self.state();
         let supplies = self.motion.robot().supplies();
-        // Nobody has talked to a routine that `boot` began, so nobody can have fallen silent.
+        // A routine that `boot` began needs no sender of commands, so silence is no fault.
         let deadman = if self.is_unattended && self.routine.is_under_way() {
             0
         } else {
@@ -283,7 +283,7 @@ impl Control {
         self.motion.set_slow(self.safety.is_slow());
     }
 
-    /// Carries out the `boot` setting, unless the robot does so already.
+    /// Carries out the `boot` setting, unless the robot is in that state already.
     fn boot(&mut self, state: State) {
         let boot = self.settings.boot(self.motion.robot());
         let is_resting = state == State::Resting;

@@ -12,7 +12,7 @@ pub enum Fault {
     Guard = 1,
     /// The supply is too low.
     Supply,
-    /// No line has come for as long as `deadman` allows.
+    /// No command has come for as long as `deadman` allows.
     Link,
     /// The program hung and was restarted.
     Watchdog,
@@ -35,13 +35,13 @@ impl Fault {
     }
 }
 
-/// Frames that a flash is lit, and dark after it.
+/// Frames for which a flash is lit, and for which it is dark after that.
 const FLASH: u8 = 8;
 
 /// Frames of the pause after the flashes.
 const PAUSE: u8 = 48;
 
-/// Frames that the beat of a robot without a fault is lit, and dark.
+/// Frames for which the slow beat of a robot without a fault is lit, and then dark.
 const BEAT: u8 = 32;
 
 /// The pattern that the LED shows.
@@ -110,7 +110,7 @@ mod tests {
         runs
     }
 
-    /// The LED's state by docs/faults.md, so many frames after a pattern began.
+    /// The LED's state according to docs/faults.md, `frame` frames after a pattern began.
     fn is_lit(fault: Option<Fault>, frame: usize) -> bool {
         let Some(fault) = fault else {
             return frame % 64 < 32;
@@ -138,7 +138,7 @@ mod tests {
             let mut led = Led::default();
             runs(&mut led, None, 13 * (index + 1));
             let runs = runs(&mut led, Some(fault), 1000);
-            // Cut into patterns by the pauses.
+            // The pauses separate the patterns.
             let mut flashes = 0;
             let mut patterns = Vec::new();
             for (lit, frames) in &runs[..runs.len() - 1] {

@@ -8,7 +8,7 @@ use crate::numbers::units::{Angle, Sweep};
 /// An order, its arguments within their ranges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Order {
-    /// Change to a gait, for so many cycles, 0 for no limit; `stand` also wakes the servos.
+    /// Change to a gait for this many cycles, 0 for no limit; `stand` also wakes the servos.
     Gait(GaitId, u16),
     /// Go to a pose, given as chassis angles in servo order.
     Pose([Angle; 4]),
@@ -24,7 +24,7 @@ pub enum Order {
     Set(Servo, Setting),
     /// Set the action three seconds after power-on.
     Boot(Boot),
-    /// End a gait when no line has been received for so many milliseconds; 0: never.
+    /// End a gait when no command has been received for this many milliseconds; 0 for never.
     Deadman(u16),
     /// Save the settings in the EEPROM.
     Save,

@@ -1,9 +1,9 @@
 //! Watches for faults in every frame: the supply, the line, the pulses, the stack. It also
 //! times the `boot` action after power-on.
 //!
-//! The table of [`supervisor`] says what each event causes. A fault stops the motion and
-//! stays until a command moves the robot again. Nothing here begins a motion by itself,
-//! except the one that `boot` asks for, three seconds after the start.
+//! The table of [`supervisor`] gives the reaction to each event. A fault stops the motion and stays until a
+//! command moves the robot again. Nothing here begins a motion by itself, except the one that `boot` asks for,
+//! three seconds after the start.
 
 use crate::control::fault::{Fault, Led};
 use crate::control::supervisor::{self, Event, Response, State};
@@ -58,7 +58,7 @@ pub struct Safety {
     is_lit: bool,
     /// Late edges that have been handled as faults.
     late: u16,
-    /// Milliseconds since the last line, up to 65535.
+    /// Milliseconds since the last command, up to 65535.
     silence: u16,
     /// Frames since power-on, up to [`BOOT_AFTER`]: then `boot` is done or cancelled.
     boot: u8,
@@ -164,8 +164,8 @@ impl Safety {
         supervisor::response(event, self.supply.measured(), state)
     }
 
-    /// Checks a frame's health. A gait ends after `deadman` milliseconds without a line (0:
-    /// never), and no sooner.
+    /// Checks a frame's health. A gait ends after `deadman` milliseconds without a command (0: never), and no
+    /// sooner.
     pub fn frame(
         &mut self,
         health: &Health,
@@ -185,7 +185,7 @@ impl Safety {
                 reaction = Reaction::Boot;
             }
         }
-        // The line came at some time in the first of these frames.
+        // The last command came at some time within the first of these frames.
         if deadman != 0 && self.silence.saturating_sub(FRAME_MS) >= deadman {
             reaction = reaction.max(self.handle(Event::Silence, state));
         }

@@ -34,7 +34,7 @@ pub enum Event {
     Save,
     /// Three seconds have passed since power-on without a received byte or a fault.
     Boot,
-    /// No line has been received for the time that `deadman` sets.
+    /// No command has been received for the time that `deadman` sets.
     Silence,
     /// The supply has become too low to move.
     TooLow,
@@ -96,7 +96,7 @@ pub const fn response(event: Event, supply: Option<Level>, state: State) -> Resp
     use Event::{Boot, Empty, LateEdge, Move, Rest, Save, Silence, Stack, Stand, Stop, TooLow, Unsafe};
     use Response::{EndPulses, Freeze, Nothing, Obey, RefuseResting, RefuseSupply};
     let enough_to_move = matches!(supply, None | Some(Level::Good | Level::Slow));
-    // Before it has been measured, writing waits for that.
+    // Before the first measurement an order to write is accepted; the write waits for it.
     let enough_to_write = matches!(supply, None | Some(Level::Good));
     let [resting, still, walking] = match event {
         // what happens              resting                  still                    walking

@@ -40,7 +40,7 @@ pub enum Level {
     Rest,
 }
 
-/// A voltage as a quotient, so that comparing it takes no division.
+/// A voltage as a quotient, so that a comparison takes no division.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Voltage {
     /// The voltage in mV, times `counts`.
@@ -153,7 +153,7 @@ impl Supply {
         self.reading
     }
 
-    /// The level of a supply, by the actions that it allows.
+    /// The present level.
     pub const fn level(&self) -> Level {
         self.level
     }
@@ -172,7 +172,7 @@ impl Supply {
         }
     }
 
-    /// The voltage of the supply that allows less.
+    /// The voltage of the supply that restricts the robot more.
     pub fn worst(&self, supplies: &Supplies) -> Voltage {
         let board = Voltage::of_board(self.reading, supplies);
         let rail = Voltage::of_rail(self.reading, supplies);
@@ -199,7 +199,7 @@ impl Supply {
         } else {
             (self.level, 0)
         };
-        // A voltage between the threshold and the one above it changes nothing.
+        // A voltage between a threshold and the same threshold raised by the hysteresis changes nothing.
         if level == self.level || (frames == TO_BETTER && level > self.level) {
             self.frames = 0;
             return false;

@@ -1,15 +1,13 @@
-//! The largest difference between the integers and floating point: proved, not measured.
+//! The largest difference between integer and floating-point results: proved, not measured.
 //!
-//! Each bound here adds up the roundings on the way of one number, in the order in
-//! which they happen, each at its worst. Nothing in it is measured but the sines of
-//! [`crate::guard::trig`], which a test there compares at every angle. A test that finds an
-//! error beyond its bound has found a mistake in the code or in this derivation; there
-//! is no bad luck.
+//! Each bound here adds up all roundings of one number, in the order in which they happen, each at its worst.
+//! Nothing in it is measured except the sines of [`crate::guard::trig`], which a test there compares at every
+//! angle. A test that finds an error beyond its bound has found a mistake in the code or in this derivation;
+//! chance is no explanation.
 //!
-//! Lengths of an end are counted in `U`, two steps of its bars, as the distance of the
-//! crank tips is. `k` is the vector from the left crank tip to the right one, `s = k^2`,
-//! `a` and `b` are the couplers, `R = (a + b)^2`, `N = (a - b)^2`. A stroke, `k'`,
-//! marks the value that the integers have for a true value.
+//! Lengths of an end are counted in `U`, two steps of its bars, like the distance of the crank tips. `k` is the
+//! vector from the left crank tip to the right one, `s = k^2`, `a` and `b` are the couplers, `R = (a + b)^2`,
+//! `N = (a - b)^2`. A prime, as in `k'`, marks the integer result for a true value.
 //!
 //! **1. Crank tips.** Base and cranks are rounded to a step, 1/4 U each. Half the base
 //! loses 1/2 U, the rounded sum of the products 1/2 U, and a direction is off by
@@ -27,28 +25,24 @@
 //! c' - c = (2x (a - b c) + 2y (b - a c) + x^2 + y^2 - 2xyc - z) / 2a'b'
 //! ```
 //!
-//! where `a - b c` is a part of `k` along the coupler, so at most `|k|`. As
-//! `sin^2 = 1 - cos^2`, a sine of `m` becomes one between the roots of `m^2 - q` and of
-//! `m^2 + q`, with `q = |c' - c| (2 |c| + |c' - c|)`.
+//! where `a - b c` is the component of `k` along the coupler, so at most `|k|`. As `sin^2 = 1 - cos^2`, a sine
+//! of `m` becomes one between the roots of `m^2 - q` and of `m^2 + q`, with `q = |c' - c| (2 |c| + |c' - c|)`.
 //!
-//! The angle at a crank tip changes by at most `(|x| + |y| + e) / (a sin(gamma))`: that
-//! is the derivative of the triangle's angle by its sides, taken along a straight way
-//! from the one triangle to the other, on all of which the sine is at least the lower
-//! root. The line `k` itself turns by at most `asin(e / |k|)`.
+//! The angle at a crank tip changes by at most `(|x| + |y| + e) / (a sin(gamma))`: that is the derivative of
+//! the triangle's angle by its sides, taken along a straight path from one triangle to the other, and on all of
+//! it the sine is at least the lower root. The line `k` itself turns by at most `asin(e / |k|)`.
 //!
 //! **3. The tables**, see [`LeanError`].
 //!
-//! **4. The products** of [`crate::guard::five_bar`]: the rounded square is off by half of its
-//! step, each shift loses at most one of what it leaves, and each reciprocal less than
-//! one of its own.
+//! **4. The products** of [`crate::guard::five_bar`]: the rounded square is off by half of its step, each shift
+//! loses at most one unit of its result, and each reciprocal less than one unit of its own.
 //!
-//! **5. A range.** Of many pairs of angles, all that is left of the angles is how far
-//! the crank tips part, `k` in `[near, far]`; sines and cosines in `e` are at most 1.
-//! Every term above then counts at its worst: `z`, `|k|` and what grows with the
-//! distance at `far`; what has it below the line at `near`. `c` falls as `k` grows, so
-//! the largest `|c|` and with it the smallest sine, for which both roots are the
-//! farthest from it, are at an end of the range; the largest sine is, too, unless `c`
-//! changes its sign in between. One pair of angles is a range without width.
+//! **5. A range.** For many pairs of angles, only the distance of the crank tips is known, `k` in
+//! `[near, far]`; sines and cosines in `e` are at most 1. Every term above then counts at its worst: `z`, `|k|`
+//! and terms that grow with the distance at `far`; terms with the distance in the denominator at `near`. `c`
+//! falls as `k` grows, so the largest `|c|`, and with it the smallest sine, for which both roots are the
+//! farthest from it, is at an end of the range. So is the largest sine, unless `c` changes its sign in between.
+//! A single pair of angles is a range without width.
 
 use lizard_kinematics as kinematics;
 use lizard_kinematics::Vector;
@@ -65,21 +59,18 @@ pub const Q15: f64 = 1.0 / 32768.0;
 /// The step of a value read from a table.
 const Q10: f64 = 1.0 / 1024.0;
 
-/// The type-2 margin below which the tables may have no value. Where the rise is read over
-/// `R - s`, that is at `R - s = R / 4096`, where the sine is
-/// `sqrt((R - s)(s - N)) / 2ab <= sqrt(R / 4096 . 4ab) / 2ab`, at most .05 with couplers
-/// of a ratio of 8, the largest that their steps allow; over `s - N` at `N / 1024`, where
-/// it is at most .077; over `s` at `R / 1024`, where it is at most .063, because that
-/// table is read there only if `N < R / 2048`. Nor is the rise above 32, the largest that
-/// an entry holds: a step that begins there ends at `17/16 R / 1024`, where the sine is at
-/// most .065. What is read in it is too small. Of couplers that differ by little, the
-/// table over `s` keeps its largest rise below the peak, which is too large there; the
-/// sine that it gives is at most .045, since the peak is below `2 N`.
+/// The type-2 margin below which the tables may have no value. Where the rise is read over `R - s`, that is at
+/// `R - s = R / 4096`, where the sine is `sqrt((R - s)(s - N)) / 2ab <= sqrt(R / 4096 . 4ab) / 2ab`, at most
+/// .05 with couplers of a ratio of 8, the largest that their steps allow; over `s - N` at `N / 1024`, where it
+/// is at most .077; over `s` at `R / 1024`, where it is at most .063, because that table is read there only if
+/// `N < R / 2048`. Nor is the rise above 32, the largest that an entry holds: a step that begins there ends at
+/// `17/16 R / 1024`, where the sine is at most .065. The value read in that step is too small. For couplers
+/// that differ by little, the table over `s` holds its largest rise below the peak, and that is too large
+/// there; the sine that it gives is at most .045, since the peak is below `2 N`.
 ///
-/// The true margin is then below a tenth: by 2. it is at most the root of `m'^2 + q`, and
-/// with the shortest couplers, of 2048 U, and `e` at most 3.1, `q` is at most
-/// `7.3 k / ab`: .0071 for stretched couplers of equal length, where `m'` is .031, and
-/// .0031 for folded ones of a ratio of 8, where it is .077.
+/// The true margin is then below a tenth: by part 2 of the derivation it is at most the root of `m'^2 + q`, and
+/// with the shortest couplers, of 2048 U, and `e` at most 3.1, `q` is at most `7.3 k / ab`: .0071 for stretched
+/// couplers of equal length, where `m'` is .031, and .0031 for folded ones of a ratio of 8, where it is .077.
 pub const KNOWN: f64 = 0.08;
 
 /// The error of the tables of a pair of couplers.
@@ -93,11 +84,10 @@ pub const KNOWN: f64 = 0.08;
 /// t^2 f'' = f ((sum of e l)^2 - sum of e l^2)
 /// ```
 ///
-/// which `Product::bend` bounds over the step by the ends of each `l`. The function is
-/// constant below its peak, where it has no bend at all. To that come the roundings:
-/// those of the entries and of what is read, 1 together (1.5 for the skew, whose entries
-/// are rounded to nearest and whose value down); a share of the step of 16 bits; and the
-/// quarter that `R` and `N` lose when they are rounded down to whole steps.
+/// which `Product::bend` bounds over the step by the ends of each `l`. The function is constant below its peak,
+/// where it has no bend at all. The roundings add to that: those of the entries and of the values read, 1
+/// together (1.5 for the skew, whose entries are rounded to nearest and whose value down); a share of the step
+/// of 16 bits; and the quarter that `R` and `N` lose when they are rounded down to whole steps.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LeanError {
     /// The error of the rise, as a number.
@@ -114,18 +104,18 @@ impl LeanError {
         let min = (a - b).powi(2).floor();
         let root = |p: f64, q: f64| Factor { power: 0.5, p, q };
         let over = |p: f64, q: f64| Factor { power: -1.0, p, q };
-        // A table is read from the whole octave on that has a 1024th of the largest argument.
+        // A table starts with the octave that contains a 1024th of the largest argument.
         let octaves = 2048.0;
         let mut rise = 0.0f64;
-        // A range of its argument, where the table is read, where its function begins.
+        // `ends` is a range of the table's argument, `within` the part in which the table is read, `first` the
+        // argument at which its function begins.
         let mut add_reading_error =
             |product: Product, ends: [f64; 2], within: [f64; 2], first: f64| {
                 let ends = [ends[0].max(within[0]), ends[1].min(within[1])];
                 if ends[0] <= ends[1] {
                     let [bend, top] = product.bend(ends, first);
                     let value = bend / 2048.0 + top / 65536.0 + Q10;
-                    // Of R and N rounded down: a relative error, here twice as large as
-                    // its first order.
+                    // From rounding R and N down: a relative error, taken as twice its first-order term.
                     let of_ends = [
                         (reach - high).max(reach / 4.0 / octaves),
                         (low - min).max(min / octaves).max(1.0),
@@ -155,7 +145,7 @@ impl LeanError {
         );
         let low = low.max(reach / octaves);
         let skew = (reach * min).sqrt() / low;
-        // The bend of 1 / s is 2; a step begins a sixteenth below at most.
+        // The bend of 1 / s is 2; a step begins at most a sixteenth below.
         let bend = 2.0 * skew * (17.0 / 16.0) / 2048.0 + skew / 65536.0;
         let skew = if left == right {
             0.0
@@ -230,17 +220,15 @@ pub struct End {
     pub type1_right: f64,
     /// The error of the crank tips' distance along the base, mm.
     pub along: f64,
-    /// The smallest true type-2 margin of the range, a sine; 0 where a loop of it does
-    /// not close.
+    /// The smallest true type-2 margin of the range, a sine; 0 if some loop in it does not close.
     pub least: f64,
     /// True if the tables have a value at every true type-2 margin of the range.
     pub is_known: bool,
 }
 
 impl End {
-    /// The errors for true bars, the integers made of them, and crank angles in the
-    /// frame of the end, deg. Where the loop does not close, `type2` is the largest
-    /// that the integers may take the margin for.
+    /// The errors for true bars, the integers made of them, and crank angles in the frame of the end, deg. If
+    /// the loop does not close, `type2` is the largest margin that the integers may compute.
     pub fn of(bars: &kinematics::FiveBar, integers: impl Into<Bars>, angles: [f64; 2]) -> Self {
         let [left, right] = angles.map(Vector::direction);
         let tip = |crank: f64, of: Vector| [crank * of.x, crank * of.y];
@@ -250,8 +238,7 @@ impl End {
         Self::at(bars, integers.into(), sizes, [apart; 2])
     }
 
-    /// The same for all crank angles at which the crank tips part by no less than
-    /// `near` and no more than `far`, mm.
+    /// The errors for all crank angles at which the distance of the crank tips is from `near` to `far`, mm.
     pub fn between(
         bars: &kinematics::FiveBar,
         integers: impl Into<Bars>,
@@ -340,9 +327,8 @@ impl End {
     }
 }
 
-/// The error of a slider's length, mm: of either coordinate, the offset or the base and
-/// both arms are rounded to a step, half a step each, the sum of the products too, and
-/// the arms' directions are off by [`DIRECTION`].
+/// The error of a slider's length, mm. In each coordinate the offset or the base and both arms are rounded to a
+/// step, half a step each, the sum of the products too, and the arms' directions are off by [`DIRECTION`].
 pub fn slider(side: &kinematics::Slider, integers: &Slider) -> f64 {
     let per_mm = per_mm(integers.scale);
     let arms = (side.front * per_mm).round() + (side.rear * per_mm).round();
@@ -364,8 +350,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(4000))]
 
-        /// A single pair is compared in [`crate::guard::clearance`] and
-        /// [`crate::guard::five_bar`].
+        /// Tests in [`crate::guard::clearance`] and [`crate::guard::five_bar`] check the bound of a single
+        /// pair.
         #[test]
         fn a_bound_over_a_range_holds_at_every_pair_of_angles_in_it(
             (robot, pose) in Sample::random().prop_flat_map(|robot| {

@@ -1,11 +1,11 @@
 //! The checks of a section beyond its CRC: no number in it may harm a servo or the board.
 //!
-//! A section whose CRC is right was sealed by a host, and that host has checked every number
-//! and every sample of every gait. So the device trusts the numbers, except those that reach
-//! the hardware: a pin that is the serial line's or the LED's, a pulse that a servo does not
-//! bear, a neutral pose in which the linkage would jam as soon as the servos wake. Any other
-//! number can make the robot walk badly, and no worse: every address of flash can be read,
-//! every index is checked where it is used, and each pulse ends at its servo's travel.
+//! A section whose CRC is right was sealed by a host, and that host has checked every number and every sample
+//! of every gait. So the device trusts the numbers, except those that reach the hardware: a pin that is the
+//! serial line's or the LED's, a pulse that a servo does not tolerate, a neutral pose in which the linkage
+//! would jam as soon as the servos wake. Any other number can make the robot walk badly, but cannot do more
+//! harm: every address of flash can be read, every index is checked where it is used, and each pulse ends at
+//! its servo's travel.
 
 use core::mem::offset_of;
 
@@ -64,7 +64,7 @@ impl<'a> Robot<'a> {
         self.section().read(offset)
     }
 
-    /// True if all pins are free ones of the board, each used once, and the rail's can measure.
+    /// True if all pins are free ones of the board, each used once, and the rail's, if any, can measure.
     #[inline(always)]
     fn has_pins(&self) -> bool {
         let rail = self.word(offset!(rail)) as u8;

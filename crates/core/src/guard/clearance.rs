@@ -1,9 +1,9 @@
-//! The singularity guard: how clear of every hazard a pose is.
+//! The singularity guard: measures how far a pose is from every hazard.
 //!
-//! Every frame passes the guard before it reaches a servo, whether it comes from a gait,
-//! a point-to-point move or a typed pose. The guard tests the pose itself, for any pose
-//! within the servos' travel, and does not use a box. It is the same for head and tail,
-//! because in its own frame the tail is built like the head.
+//! Every frame passes the guard before it reaches a servo, whether it comes from a gait, a point-to-point move
+//! or a typed pose. The guard tests the pose itself, for any pose within the servos' travel; it does not
+//! approximate the safe poses by a box. It is the same for head and tail, because in its own frame the tail is
+//! built like the head.
 //!
 //! Every condition depends on one servo or on two, so `make prove` can compare all poses
 //! with floating point, by trying every pair of angles.
@@ -53,9 +53,9 @@ pub fn hazard(robot: &Robot, pose: &Pose) -> Option<Hazard> {
 /// Every margin of one pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Clearance {
-    /// Type-2 of head and tail; type-1 of A1 to A4; legs of A1 to A4: sin theta_lg in
-    /// the frame of its end, which is negative beyond a change point (0, 180 deg),
-    /// where the parallelogram may have come out crossed.
+    /// Type-2 of head and tail; type-1 of A1 to A4; legs of A1 to A4: sin theta_lg in the frame of its end,
+    /// which is negative beyond a change point (0, 180 deg), where the parallelogram may have flipped to its
+    /// crossed form.
     pub margins: [Sine; MARGINS],
     /// The sliders' squared lengths, left and right, in their steps.
     pub sliders_sq: [u32; 2],
@@ -92,7 +92,7 @@ impl Clearance {
         clearance
     }
 
-    // Not inlined, like the next function: the compiler would unroll a loop over two.
+    // Not inlined, like `length_sq`: the compiler would unroll a loop over two.
     #[inline(never)]
     fn measure_end(&mut self, robot: &Robot, end: End, cranks: &[Direction; 4]) {
         let [left, right] = end.servos();

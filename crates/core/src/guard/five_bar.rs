@@ -63,14 +63,13 @@ impl<'a> FiveBar<'a> {
         &self.bars
     }
 
-    /// The margins with the cranks in these directions of the end's own frame. All
-    /// zero where the loop cannot close, or is so near to that that its type-2 margin
-    /// is below a tenth and the tables have no value.
+    /// The margins with the cranks in these directions of the end's own frame. All are zero if the loop cannot
+    /// close, or if its type-2 margin is below a tenth and the tables have no value there.
     #[inline(never)]
     pub fn margins(&self, left: &Direction, right: &Direction) -> EndMargins {
         let bars = &self.bars;
-        // Half the step of the bars, so that the distance of the crank tips fits
-        // and the shift is one of whole bytes.
+        // Half the step of the bars, so that the distance of the crank tips fits and the shift is by whole
+        // bytes.
         let tips = Tips {
             along: (bars.base >> 1)
                 .wrapping_add(upper(mul(bars.right, right.cos) - mul(bars.left, left.cos))),
@@ -82,7 +81,7 @@ impl<'a> FiveBar<'a> {
         else {
             return EndMargins::default();
         };
-        // To nearest: where the margin is small, so are the bits that are left.
+        // Rounded to nearest, since a small margin leaves few bits.
         let square = (tips_sq + (1 << (bars.square_shift - 1))) >> bars.square_shift;
         let square = square.min(0x7fff) as i16;
         let area = (mul(rise, square) >> bars.area_shift) as u16;
@@ -116,8 +115,7 @@ impl Tips {
     fn elbow(self, crank: &Direction, rise: i16, skew: i16, per_coupler: i16) -> Sine {
         let cross = upper((mul(self.along, crank.sin) - mul(self.across, crank.cos)) << 1);
         let dot = upper((mul(self.along, crank.cos) + mul(self.across, crank.sin)) << 1);
-        // The sum is at most twice the coupler; what its parts exceed 16 bits by
-        // cancels.
+        // The sum is at most twice the coupler; an overflow of its parts beyond 16 bits cancels.
         let mut opened = cross.wrapping_add((mul(rise, dot) >> 10) as i16);
         if skew != 0 {
             opened = opened.wrapping_add((mul(skew, cross) >> 10) as i16);

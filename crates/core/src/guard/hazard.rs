@@ -8,12 +8,11 @@ use crate::numbers::units::Sine;
 // Starts at 3, since the absence of a hazard has to be zero: see `Main::new`.
 #[repr(u8)]
 pub enum Margin {
-    /// Between the two couplers of an end.
+    /// The margin between the two couplers of an end.
     Type2(End) = 3,
-    /// Between the crank on a servo and its coupler, negative where the elbow is
-    /// bent inwards.
+    /// The margin between the crank on a servo and its coupler, negative where the elbow is bent inwards.
     Type1(Servo),
-    /// Of the parallelogram leg of a servo, negative beyond a change point.
+    /// The margin of the parallelogram leg of a servo, negative beyond a change point.
     Leg(Servo),
 }
 

@@ -12,7 +12,7 @@ use crate::guard::trig::Direction;
 use crate::numbers::slider::Slider;
 
 impl Slider {
-    /// The right side as a left one.
+    /// The right side mirrored to a left one.
     pub const fn mirrored(self) -> Self {
         Self {
             offset: self.offset.wrapping_neg(),
@@ -74,7 +74,7 @@ mod tests {
         ) {
             let integers = side_of(&side, -10.0, 10.0);
             let [front, rear] = [front, rear].map(Angle);
-            // Cranks in the frame of their end; the slider's rear one in the tail's.
+            // Each crank in the frame of its end, so the rear one in the tail's.
             let length = if is_mirrored {
                 let [front, rear] = [front, rear].map(|angle| Direction::of(angle).mirrored());
                 integers.mirrored().length_sq(&front, &rear)

@@ -59,7 +59,7 @@ fn quarter(across: u16) -> i16 {
     let index = usize::from(across >> 7);
     let entry = QUARTER.at(index).load();
     let next_entry = QUARTER.at(index + 1).load();
-    // A step is at most 402 in height, more than a byte: its two bytes apart.
+    // A step is at most 402 high, more than a byte holds, so its two bytes are multiplied separately.
     let step = (next_entry - entry) as u16;
     let part = (across << 1) & 0xff;
     let rise = (step >> 8) * part + (((step & 0xff) * part + 0x80) >> 8);
@@ -70,7 +70,7 @@ flash! {
     const QUARTER: [i16; STEPS + 1] = quarter_wave();
 }
 
-/// Evaluated by the compiler: no float reaches the microcontroller.
+/// The table, computed at compile time: no float reaches the microcontroller.
 const fn quarter_wave() -> [i16; STEPS + 1] {
     let mut table = [0; STEPS + 1];
     let mut k = 0;

@@ -1,8 +1,8 @@
 //! The settings of a servo that a person may change while the robot runs.
 //!
-//! A horn goes on its spline every 14 degrees, servos of one type differ in their gain,
-//! and some are mounted upside down. So a person finds the four numbers here by looking
-//! at the robot, and the robot keeps them in its EEPROM.
+//! A horn fits on its spline only every 14 degrees, servos of one type differ in their gain, and some are
+//! mounted upside down. So a person finds the four numbers here by looking at the robot, and the robot keeps
+//! them in its EEPROM.
 
 use lizard_avr::mul_unsigned;
 
@@ -13,8 +13,8 @@ use crate::numbers::units::{ONE_Q14, Sweep, Width};
 /// The numbers of one servo that a person may set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Adjustment {
-    /// The angle by which the horn sits too far clockwise: so far the servo has to turn
-    /// counter-clockwise to stand at its neutral angle.
+    /// The angle by which the horn sits too far clockwise. The servo turns counter-clockwise by as much to
+    /// reach its neutral angle.
     pub trim: Sweep,
     /// The servo's gain, as [`Calibration::gain`].
     pub gain: i16,
@@ -35,8 +35,8 @@ impl Adjustment {
         }
     }
 
-    /// The servo of robot.toml, `factory`, with this adjustment. Its travel ends
-    /// where the pulses would leave those that `factory` allows.
+    /// The servo of robot.toml, `factory`, with this adjustment. Its travel is limited to the pulses that
+    /// `factory` allows.
     pub fn apply(&self, factory: &Calibration) -> Calibration {
         let ends = [factory.pulse(factory.min), factory.pulse(factory.max)];
         let pulses = [ends[0].min(ends[1]), ends[0].max(ends[1])];
@@ -86,13 +86,13 @@ impl Adjustment {
     }
 }
 
-/// The end of a travel towards `end`: that sweep, or the last one before it whose pulse
-/// is between the shortest and the longest; the neutral pulse is.
+/// The end of a travel towards `end`: that sweep, or the last one before it whose pulse is between the shortest
+/// and the longest. The neutral pulse must be between them.
 #[inline(never)]
 fn farthest(servo: &Calibration, end: Sweep, [shortest, longest]: [u16; 2]) -> Sweep {
     let neutral = servo.neutral.0;
-    // A pulse is the neutral one and n times the gain, to the nearest cycle; this many
-    // times the gain stays within the two limits.
+    // A pulse is the neutral one plus n times the gain, rounded to a cycle. As long as n times the gain is at
+    // most this number, the pulse is within both limits.
     let max_pulse_steps = if (servo.gain < 0) == (end.0 < 0) {
         mul_unsigned(longest - neutral, ONE_Q14 as u16) + HALF_Q14 - 1
     } else {
@@ -117,7 +117,7 @@ mod tests {
     use super::*;
     use crate::sample::{STEPS_PER_DEGREE, Sample};
 
-    /// Any adjustment that the console takes.
+    /// Any adjustment that the console accepts.
     fn adjusted() -> impl Strategy<Value = Adjustment> {
         let sweep = -3641i16..=3641;
         (

@@ -1,8 +1,7 @@
 //! The contents of the EEPROM: two copies of the settings, and the last rest pose.
 //!
-//! The two copies are written alternately, so that one is valid while the other is being
-//! written; the newer one counts. A damaged copy is not used. If no copy
-//! can be used, robot.toml's numbers are.
+//! The two copies are written alternately, so that one is valid while the other is being written; the newer one
+//! counts. A damaged copy is not used. If neither copy can be used, robot.toml's numbers apply.
 //!
 //! | address | what |
 //! |---|---|
@@ -37,9 +36,9 @@ pub enum Outcome {
     OneCopy,
     /// No copy is valid.
     Damaged,
-    /// Settings for other servos, or of another firmware.
+    /// The settings are for other servos, or of another firmware.
     Foreign,
-    /// Settings with which some gait would leave a servo's travel.
+    /// With these settings some gait would leave a servo's travel.
     Unfit,
 }
 
@@ -75,7 +74,7 @@ impl Copies {
     }
 }
 
-/// Reads the settings saved last into `settings`, and tells whether they can be used.
+/// Reads the settings saved last into `settings`, and returns their state.
 #[inline(never)]
 pub fn read<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> Outcome {
     let copies = Copies::check(memory);

@@ -1,11 +1,10 @@
 //! The state that survives a reset of the processor: a few bytes of RAM that the start-up
 //! code does not clear.
 //!
-//! RAM keeps its contents as long as there is power. The boot loader of the UNO clears
-//! the register with the cause of the reset, and does not pass its value on. So these
-//! bytes tell the next run, by a mark and checksums, that power was not lost, if the
-//! program hung, and the state of the servos. Random bytes pass for a mark once in 32 768
-//! times, and then for a stance once in 256.
+//! RAM keeps its contents as long as there is power. The boot loader of the UNO clears the register with the
+//! cause of the reset, and does not pass its value on. So these bytes tell the next run, by a mark and
+//! checksums, if power was lost, if the program hung, and the state of the servos. Random bytes pass for a mark
+//! once in 32 768 times, and then for a stance once in 256.
 //!
 //! A reset may come between any two stores, and nothing is lost. There are two copies of
 //! the stance, which are written alternately. One byte says which of them is complete,
@@ -53,7 +52,7 @@ const ALIVE: u8 = 0x96;
 const RUNNING: u8 = 0x5c;
 const HUNG: u8 = 0xa3;
 
-/// The flag in a copy's first byte, besides the frames since pulses began: no pulses.
+/// The flag in a copy's first byte for no pulses; the other bits are the frames since pulses began.
 const RESTING: u8 = 0x80;
 
 /// The value of that byte in a copy that holds nothing.

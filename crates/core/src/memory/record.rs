@@ -25,7 +25,7 @@ pub const SIZE: usize = 1024;
 /// The number of bytes in a record's content.
 pub const CONTENT: usize = 42;
 
-// Whether the step is even distinguishes the CRC's two bytes.
+// The parity of the step selects the byte of the CRC.
 const _: () = assert!(CONTENT.is_multiple_of(2));
 
 /// The content of a record.
@@ -60,7 +60,7 @@ pub enum RecordState {
 pub enum Progress {
     /// There is more to write, or the memory is not ready.
     InProgress,
-    /// The memory holds what it should.
+    /// All bytes are written and read back.
     Done,
     /// The memory does not keep what was written.
     Failed,

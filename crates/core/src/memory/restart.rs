@@ -1,7 +1,7 @@
 //! The cause of a reset, and the servos' state from before it.
 //!
-//! A robot that restarts in mid-step need not fall over: the servos are where they were,
-//! and a few bytes of memory that survive a reset say where that is ([`crate::memory::kept`]).
+//! A robot that restarts in mid-step need not fall over: the servos are where they were, and a few bytes of
+//! memory that survive a reset tell their positions ([`crate::memory::kept`]).
 
 use crate::numbers::pose::{Pose, Pulses};
 use crate::numbers::rate::Rate;
@@ -37,8 +37,8 @@ pub struct Stance {
     pub awake: u8,
     /// The pose that the servos hold or last held.
     pub pose: Pose,
-    /// The pulses of the last frame, of servos that sleep, too. They may belong to a
-    /// calibration that was never saved.
+    /// The pulses of the last frame, including those of servos that sleep. They may belong to a calibration
+    /// that was never saved.
     pub sent: Pulses,
 }
 
@@ -54,8 +54,8 @@ pub struct Restart {
     pub may_be_supply: bool,
     /// Consecutive resets before this one that a weak supply may have caused.
     pub brown_outs: u8,
-    /// The rate of the serial line: that before a brown-out or a hang, else the fastest, since
-    /// USB speaks it and opening its port resets the board.
+    /// The rate of the serial line: that before a brown-out or a hang, else the fastest, since USB uses it, and
+    /// opening its port resets the board.
     pub rate: Rate,
     /// The servos' state before the reset, if it is known. Always `None` after
     /// [`Cause::Power`].

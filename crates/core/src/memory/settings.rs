@@ -1,5 +1,5 @@
-//! All settings that a person may change and the robot keeps: the servos' adjustments,
-//! the action after power-on, and how long a gait goes on without a line.
+//! All settings that a person may change and the robot keeps: the servos' adjustments, the action after
+//! power-on, and the time for which a gait continues without a command.
 //!
 //! In RAM the settings have the same bytes as in the EEPROM, so neither saving nor
 //! loading converts anything.
@@ -73,8 +73,7 @@ impl Settings {
         self.put(HASH + 2, (hash >> 16) as u16);
     }
 
-    /// A record that keeps a pose instead of settings: each servo's sweep is where its
-    /// trim would be.
+    /// A record that keeps a pose instead of settings: each servo's sweep takes the place of its trim.
     #[inline(never)]
     pub fn of_pose(pose: &Pose, robot: &Robot) -> Self {
         let mut saved = Self::NONE;
@@ -177,12 +176,12 @@ impl Settings {
         self.put(BOOT, saved_key);
     }
 
-    /// A gait ends when no command has come for this many milliseconds; 0 for never.
+    /// The time without a command after which a gait ends, ms; 0 for never.
     pub fn deadman(&self) -> u16 {
         self.get(DEADMAN)
     }
 
-    /// Sets how long a gait continues without a line.
+    /// Sets the time without a command after which a gait ends, ms; 0 for never.
     pub fn set_deadman(&mut self, ms: u16) {
         self.put(DEADMAN, ms);
     }

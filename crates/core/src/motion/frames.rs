@@ -10,7 +10,7 @@
 //!    motion begins, all servos arriving together;
 //! 3. the new gait reaches its pace gradually.
 //!
-//! `stop` alone skips the braking: it freezes the pose in the next frame.
+//! `stop` skips the braking and freezes the pose in the next frame; `rest` ends the pulses.
 //!
 //! # States
 //! The state, the motion that comes next, and the effect of a frame on both. "Standing
@@ -28,10 +28,9 @@
 //! state, while the pulses change at the slew limit to the new ones of this pose. After
 //! that a motion starts again gradually.
 //!
-//! Invariants: every pose that leaves [`Motion::tick`] has passed the guard. A pose that
-//! has not passed is never sent; the last safe pose is held instead, and the reason is
-//! kept for the console. Time is a call: the 50 Hz tick is the only clock, so the pace
-//! cannot depend on how busy the processor is.
+//! Invariants: every pose that leaves [`Motion::tick`] has passed the guard. A pose that has not passed is
+//! never sent; the last safe pose is held instead, and the reason is kept for the console. The 50 Hz call of
+//! [`Motion::tick`] is the only clock, so the pace cannot depend on how busy the processor is.
 
 use lizard_avr::Region;
 
@@ -69,7 +68,7 @@ pub struct Motion {
     robot: Robot<'static>,
     calibration: [Calibration; 4],
     state: State,
-    /// The target once the present motion has come to a stop; `None` while the robot rests.
+    /// The target after the present motion has stopped; always `None` while the robot rests.
     next: Option<Target>,
     /// The count of the gait that is under way or comes next.
     count: Count,
@@ -99,9 +98,8 @@ impl Motion {
         motion
     }
 
-    /// A motion without a robot, every bit zero, so that it needs no copy in flash.
-    /// [`Motion::take_robot`] or [`Motion::begin`] has to follow, and the calibration of every
-    /// servo.
+    /// A motion that has not begun. With [`Robot::NONE`] every bit is zero, so that it needs no copy in flash.
+    /// [`Motion::take_robot`] or [`Motion::begin`] has to follow, and the calibration of every servo.
     pub const fn unstarted(robot: Robot<'static>) -> Self {
         Self {
             calibration: [Calibration::NONE; 4],
@@ -202,8 +200,8 @@ impl Motion {
         self.count.phase_covered = 0;
     }
 
-    /// Brakes a gait, or the move to it, and holds the pose in which that stands still. Returns
-    /// false if there is none to end.
+    /// Brakes a gait, or the move to it, and holds the pose in which it stops. Returns false if there is none
+    /// to end.
     #[inline(never)]
     pub fn end_gait(&mut self) -> bool {
         let is_moving = self.next.is_some()
@@ -315,7 +313,7 @@ impl Motion {
             (None, State::Moving { gait: None, .. }) => Activity::Pose,
             (None, State::Moving { gait: Some(id), .. })
             | (None | Some(Target::End), State::Cycling { id, .. }) => Activity::Gait(id),
-            // A gait that has ended needs no end of its count.
+            // A move that ends before its gait has begun.
             (Some(Target::End), _) => Activity::Stop,
         }
     }
@@ -333,8 +331,8 @@ impl Motion {
             self.state = State::Holding { is_ordered: false };
             self.stance.is_resting = false;
             self.stance.awake = 0;
-            // The servos are still where their last pulses turned them, if they had any;
-            // settings that have changed since must not make them leap.
+            // The servos are still where their last pulses turned them, if they had any; settings that have
+            // changed since must not make them jump.
             self.is_settling = true;
         }
         self.next = Some(target);
@@ -399,7 +397,7 @@ impl Motion {
         }
     }
 
-    /// Begins the move towards what comes next, once the old motion has no pace.
+    /// Begins the move to the next target once the pace of the old motion is 0.
     #[inline(always)]
     fn start_next_target(&mut self) {
         if let Some(target) = self.next

@@ -1,10 +1,9 @@
 //! A gait: four sweeps as a function of one phase.
 //!
-//! Feet are never lifted; each leg swings and drags its pad. The shape of the swing and
-//! the order of the legs make the robot go, so a gait is a waveform read at four offsets
-//! with four gains. Waveforms are tables of 64 samples in flash; between samples a
-//! straight line is within half a degree of the real curve, less than a hobby servo resolves.
-//! The host that makes the tables checks that.
+//! Feet are never lifted; each leg swings and drags its pad. The robot advances because of the swing's shape and the
+//! order of the legs, so a gait is a set of waveforms, read for the four servos with an offset and a gain each. A
+//! waveform is a table of 64 samples in flash. Linear interpolation between the samples is within half a degree of
+//! the real curve, less than a hobby servo resolves. The host that makes the tables checks that.
 
 use lizard_avr::{Flash, mul};
 
@@ -63,7 +62,7 @@ mod tests {
         core::array::from_fn(samples)
     }
 
-    /// A channel that reads a waveform as it is.
+    /// A channel that reads a waveform unchanged.
     const PLAIN: Channel = Channel {
         wave: 0,
         offset: 0,
@@ -86,7 +85,7 @@ mod tests {
             let rise = f64::from(next) - f64::from(here);
             let factor = f64::from(gain) / 16384.0;
             let exact = factor * (f64::from(here) + rise * at.fract());
-            // Half a step before the gain, half after it, and the phase's last two bits.
+            // Half a step before the gain, half a step after it, and the phase's lowest two bits.
             let max = 0.5 + factor.abs() * (0.5 + 3.0 * rise.abs() / 1024.0);
             prop_assume!(exact.abs() < 32_000.0);
             prop_assert!((actual - exact).abs() <= max, "{actual} for {exact}");

@@ -1,7 +1,7 @@
-//! The motion: from a gait or a target to the pose of each frame.
+//! Motion: turns a gait or a target into the pose of each frame.
 //!
-//! [`Motion`] joins gaits and moves so that no servo ever jumps; every pose passes the
-//! [guard](crate::guard) before it is sent.
+//! [`Motion`] joins gaits and moves so that no servo jumps. Every pose passes the [guard](crate::guard) before it is
+//! sent.
 
 mod frames;
 pub mod gait;

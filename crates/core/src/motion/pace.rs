@@ -1,20 +1,20 @@
-//! The pace of a motion, as a share of its own full pace.
+//! The pace of a motion, as a share of its full pace.
 //!
-//! A servo with a load cannot change its speed at once. A motion gathers pace when it
-//! begins and loses it before it ends; a gait's pace is its speed in percent, too.
+//! A servo with a load cannot change its speed at once, so a motion speeds up when it begins and slows down before it
+//! ends. The pace also sets a gait's speed in percent.
 
 use lizard_avr::mul_unsigned;
 
 /// Full pace, the largest value of a pace.
 pub const FULL: u16 = 1024;
 
-/// A motion gathers or loses all its pace in seven frames, 0.14 s. In an odd number of
-/// steps a gait goes a whole number of its frames meanwhile, so that at full pace the
-/// frames meet the corners between its moves: half a frame beside them, two legs would
-/// move at once there, and `crawl` would lose 1.2 % of its distance.
+/// The change of the pace per frame. A motion gains or loses its full pace in seven frames, 0.14 s. With an odd
+/// number of steps, a gait meanwhile covers the distance of a whole number of frames at full pace. Frames at full
+/// pace then fall exactly on the corners between the gait's moves. If they were half a frame off, two legs would move
+/// at once at each corner, and `crawl` would lose 1.2 % of its distance.
 const PACE_STEP: u16 = FULL.div_ceil(7);
 
-/// The pace one frame later, on its way to `target`.
+/// The pace one frame later, as it approaches `target`.
 pub fn step_toward(pace: u16, target: u16) -> u16 {
     target
         .max(pace.saturating_sub(PACE_STEP))
@@ -48,7 +48,7 @@ mod tests {
     fn a_speed_in_percent_rounds_to_the_nearest_pace() {
         for percent in 10..=100u8 {
             let exact = f64::from(percent) * 1024.0 / 100.0;
-            // 2622/256 is 0.02 % more than that, and then to nearest.
+            // 2622/256 is 0.02 % more than `exact`; the result is rounded to nearest.
             let error = f64::from(of_percent(percent)) - exact * 1.000_214;
             assert!(error.abs() <= 0.501, "{percent}: {error}");
         }

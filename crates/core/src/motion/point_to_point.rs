@@ -1,16 +1,15 @@
 //! A point-to-point move: straight from one pose to another.
 //!
-//! All four servos start together, follow one smoothstep and arrive together;
-//! the longest way sets the time, so that no servo exceeds the slew limit. A
-//! smoothstep is at most one and a half times as fast as a steady move.
+//! All four servos start together, follow one smoothstep and arrive together. The longest distance sets the time, so
+//! that no servo exceeds the slew limit. The top speed of a smoothstep is one and a half times that of a steady move.
 
 use lizard_avr::{mul, mul_unsigned};
 
 use crate::numbers::pose::Pose;
 use crate::numbers::slew::Slew;
 
-/// The shortest move, in frames, so that even a small correction is no jerk. With
-/// eight, no move changes a servo's speed faster than the gaits do.
+/// The shortest duration of a move, in frames, so that even a small correction does not jerk. With eight frames, no
+/// move changes a servo's speed faster than the gaits do.
 const MIN_FRAMES: u16 = 8;
 
 /// The full duration of a move, Q15.
@@ -64,7 +63,7 @@ impl PointToPoint {
         let share = smoothstep(self.elapsed) as i16;
         let mut pose = self.from;
         for (sweep, to) in pose.0.iter_mut().zip(&self.to.0) {
-            // Twice half the distance, because a distance may be more than half a turn.
+            // Twice half the distance, because the full distance may be more than half a turn and overflow.
             let half = (to.0 >> 1) - (sweep.0 >> 1);
             let distance = (mul(half, share) + (1 << 13)) >> 14;
             sweep.0 = sweep.0.wrapping_add(distance as i16);
@@ -131,8 +130,8 @@ mod tests {
             prop_assert_eq!(sweeps.last(), Some(&to));
             let max = sweeps.windows(2).map(|pair| pair[1].abs_diff(pair[0])).max();
             prop_assert!(max <= Some(slew.per_frame), "{max:?} of {slew:?}");
-            // A smoothstep needs half as long again as a steady move, and a frame
-            // is a whole number of 1/32768 of the time.
+            // A smoothstep needs one and a half times the time of a steady move, and each frame is a whole number of
+            // 1/32768 of that time.
             let frames = 1.5 * f64::from(from.abs_diff(to)) / f64::from(slew.per_frame - 6);
             let min = frames.ceil().max(8.0) + 1.0;
             let max = 32_768.0 / (32_768.0 / min).floor() + 1.0;
@@ -152,7 +151,7 @@ mod tests {
                 let u = f64::min(frame, 1.0);
                 let exact = f64::from(from) + distance * u * u * (3.0 - 2.0 * u);
                 let sweep = f64::from(path.pose().0[0].0);
-                // Q15 of the way, twice, and halves of odd sweeps.
+                // Q15 rounding of the distance, twice, and the halving of odd sweeps.
                 let rounding = 2.0 + distance.abs() / 8000.0;
                 prop_assert!((sweep - exact).abs() <= rounding, "{sweep}, {exact}");
                 prop_assert!((sweep - before) * distance.signum() >= -rounding, "{sweep} after {before}");

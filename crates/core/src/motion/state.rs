@@ -5,7 +5,7 @@ use crate::numbers::gaits::{Gait, GaitId};
 use crate::numbers::pose::Pose;
 use crate::numbers::robot::Robot;
 
-/// An activity of the robot, also while the robot is still moving to it.
+/// The robot's activity; set already while the robot still moves to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Activity {
     /// A gait (`stand` is one).
@@ -27,13 +27,13 @@ pub enum Target {
     Pose(Pose) = 1,
     /// A gait, reached by a move to its first pose.
     Gait(GaitId),
-    /// The end of a gait whose count is over: the pose in which it comes to a standstill.
+    /// The standstill that ends a gait whose count is complete, in whatever pose that is.
     End,
 }
 
-/// The path that the servos follow at the moment.
+/// The path that the servos follow in this frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-// `Resting` is zero, whatever the others hold: see `Main::new`.
+// `Resting` is zero, whatever the other variants hold: see `Main::new`.
 #[repr(u8)]
 pub enum State {
     /// Resting: the servos get no pulses.
@@ -47,7 +47,7 @@ pub enum State {
     Moving {
         path: PointToPoint,
         pace: u16,
-        /// The gait that begins at the end of the move; without one, the pose is held.
+        /// The gait that begins at the end of the move; if `None`, the pose is held.
         gait: Option<GaitId>,
     },
     /// Cycling through a gait.
@@ -61,7 +61,7 @@ pub enum State {
 }
 
 impl State {
-    /// A gait from phase 0, still without pace.
+    /// A gait at phase 0 and pace 0.
     pub fn cycling(robot: &Robot, id: GaitId) -> Self {
         Self::Cycling {
             id,

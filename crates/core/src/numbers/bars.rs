@@ -1,6 +1,6 @@
-//! The bars of a five-bar linkage, and the factors that the guard needs of them.
+//! The bars of a five-bar linkage, and the factors that the guard derives from them.
 //!
-//! A host computes the factors once, so that the device divides by nothing.
+//! A host computes the factors in advance, so that the device needs no division.
 
 use crate::numbers::couplers::Coupling;
 use crate::numbers::units::Scale;
@@ -20,14 +20,14 @@ lizard_avr::plain! {
         pub(crate) base: i16,
         pub(crate) left: i16,
         pub(crate) right: i16,
-        /// One over `4 a b`, in the scale that the shifts leave.
+        /// `1 / (4 a b)`, in the scale that results from the two shifts.
         pub(crate) per_area: u16,
-        /// `2^27` over each coupler.
+        /// `2^27` divided by the left coupler and, below, by the right one.
         pub(crate) per_left: i16,
         pub(crate) per_right: i16,
         /// The shift that reduces a squared distance of the crank tips to fifteen bits.
         pub(crate) square_shift: u16,
-        /// The shift that reduces the rise times that to sixteen bits.
+        /// The shift that reduces the rise times that squared distance to sixteen bits.
         pub(crate) area_shift: u16,
         pub(crate) scale: Scale,
         /// Unused: it pads the fields above to a multiple of four bytes.
@@ -51,9 +51,8 @@ impl Bars {
         rest: 0,
     };
 
-    /// A loop with these bars, in steps: the distance between the shafts, the left
-    /// and the right crank, which are at most [`MAX_STEPS`] together; and two
-    /// couplers.
+    /// A loop with these bars, in steps: the distance between the shafts, the left and the right crank, whose sum is
+    /// at most [`MAX_STEPS`]; and the two couplers.
     ///
     /// # Panics
     /// If a coupler is shorter than [`MIN_COUPLER`].
@@ -86,7 +85,7 @@ impl Bars {
         }
     }
 
-    /// The step of the lengths.
+    /// The length of one step.
     pub const fn scale(&self) -> Scale {
         self.scale
     }

@@ -1,21 +1,20 @@
 //! A servo's calibration: the relation of its pulses to its angles.
 //!
-//! Servos of one type differ, and a horn fits its spline only every 14 degrees. So this is
-//! not a constant of the robot. It is a value in the motion, made from robot.toml's numbers
-//! and from the settings of a person ([`crate::memory::adjustment`]).
+//! Servos of one type differ, and a horn fits its spline only every 14 degrees. So the calibration is no constant of
+//! the robot: it is a value in the motion, computed from robot.toml and from the adjustment that a user has made
+//! ([`crate::memory::adjustment`]).
 
 use lizard_avr::{mul, mul_unsigned};
 
 use crate::numbers::units::{Sweep, Width};
 
 lizard_avr::plain! {
-    /// One servo's pulses and travel.
+    /// The pulse widths and the travel of one servo.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Calibration {
         /// The pulse width at the neutral angle.
         pub neutral: Width,
-        /// CPU cycles for each 1/65536 turn, Q14; negative for a servo whose
-        /// longer pulse turns it clockwise.
+        /// CPU cycles for each 1/65536 turn, Q14; negative for a servo that a longer pulse turns clockwise.
         pub gain: i16,
         /// The travel's clockwise end.
         pub min: Sweep,
@@ -38,7 +37,7 @@ impl Calibration {
         Width(self.neutral.0.wrapping_add(self.turned(sweep) as u16))
     }
 
-    /// The same for sweeps beyond the travel: 0 for less, 65535 for more than that.
+    /// The pulse width for any sweep, also one beyond the travel, clamped to 0..=65535.
     #[inline(never)]
     pub fn pulse(&self, sweep: Sweep) -> u16 {
         let pulse = i32::from(self.neutral.0) + self.turned(sweep);
@@ -49,8 +48,8 @@ impl Calibration {
         (mul(sweep.0, self.gain) + (1 << 13)) >> 14
     }
 
-    /// The largest change of the pulse in a frame, for a turn of `per_frame`, 1/65536
-    /// turn; at least one cycle.
+    /// The largest change of the pulse width in a frame, at least one CPU cycle, for a turn of `per_frame` (1/65536
+    /// turn).
     pub fn slew(&self, per_frame: u16) -> u16 {
         let cycles = (mul_unsigned(per_frame, self.gain.unsigned_abs()) >> 14) as u16;
         cycles.max(1)
@@ -63,8 +62,7 @@ impl Calibration {
 }
 
 lizard_avr::plain! {
-    /// The sweeps that a robot's gaits need of a servo; the neutral angle, 0, is
-    /// among them.
+    /// The range of a servo's sweeps that a robot's gaits need; it includes the neutral angle, 0.
     #[derive(Debug, Default, PartialEq, Eq)]
     pub struct Reach {
         /// The clockwise end.
@@ -98,8 +96,8 @@ mod tests {
                     let turned = f64::from(sweep) / STEPS_PER_DEGREE;
                     let us = float.neutral_us + float.us_per_degree * turned;
                     let width = f64::from(servo.width(Sweep(sweep)).0);
-                    // Half a cycle each of the neutral width and of this one; the
-                    // gain's rounding over half a turn.
+                    // Half a cycle for the rounding of the neutral width, half for that of this width, and the gain's
+                    // rounding over half a turn.
                     prop_assert!((width - 16.0 * us).abs() <= 2.0, "{float:?} at {sweep}: {width}");
                 }
                 prop_assert_eq!(servo.width(Sweep(0)), servo.neutral);
@@ -125,7 +123,7 @@ mod tests {
             min: Sweep(-9000),
             max: Sweep(9000),
         };
-        // Gains of a half and of one and a half cycle a step.
+        // Gains of half a cycle and of one and a half cycles a step.
         assert_eq!(servo(8192).width(Sweep(3)), Width(20_002));
         assert_eq!(servo(8192).width(Sweep(-3)), Width(19_999));
         assert_eq!(servo(-24_576).width(Sweep(1)), Width(19_999));

@@ -1,36 +1,35 @@
 //! Certified cells: ranges of two servos' sweeps in which the guard is known to accept every
 //! pose, so that it need not be measured.
 //!
-//! Measuring all margins of a pose takes most of a frame's time, and far from all limits
-//! the result is always "safe". Every condition of the guard depends on one servo or on
-//! two, so four small maps over pairs of servos can say where that is. The host makes
-//! these maps with the numbers of a robot, and proves that the integers of
-//! [`crate::guard::clearance`] accept every pose of every cell. A pose outside of the cells is not
-//! unsafe; the device measures it.
+//! Measuring all margins of a pose takes most of a frame's time, and far from all limits the result is always "safe".
+//! Every condition of the guard depends on one or two servos, so four small maps over pairs of servos can mark these
+//! safe ranges. The host makes the maps from a robot's numbers, and proves that the integer arithmetic of
+//! [`crate::guard::clearance`] accepts every pose of every cell. A pose outside the cells is not necessarily unsafe;
+//! the device measures it.
 
 use lizard_avr::{Flash, flash};
 
 use crate::numbers::units::Sweep;
 
-/// The most rows that a map may have.
+/// The largest number of rows in a map.
 pub const MAX_ROWS: usize = 64;
 
-/// Binary logarithm of the steps of a sweep (1/65536 turn) that a row is wide: 1.4 deg.
+/// Binary logarithm of a row's width, in steps of a sweep (1/65536 turn): 1.4 deg.
 pub const ROW_BITS: u32 = 8;
 
-/// Binary logarithm of the steps of a sweep that a column is wide: 0.7 deg.
+/// Binary logarithm of a column's width, in the same steps: 0.7 deg.
 pub const COLUMN_BITS: u32 = 7;
 
 flash! {
     const NO_ROWS: [[i8; 2]; 0] = [];
 }
 
-/// The certified cells of one pair of servos, as rows among those of several maps. In them,
-/// every condition that depends on the two holds.
+/// The certified cells of one pair of servos: rows in a table that several maps share. In a cell, every condition of
+/// the guard that depends on these two servos holds.
 #[derive(Clone, Copy)]
 pub struct Cells<'a> {
     first: i8,
-    /// The index of the first row, and the number of rows.
+    /// The index of the first row in `rows`, and the number of rows.
     begin: u16,
     count: u8,
     rows: Flash<'a, [[i8; 2]]>,
@@ -42,11 +41,10 @@ impl Cells<'static> {
 }
 
 impl<'a> Cells<'a> {
-    /// The map whose `count` rows begin at `start` among `rows`. They follow one another
-    /// from row `first` on, around the turn. Each has its first and its last column, both
-    /// of which belong to it; a row whose first column is the greater one has none. A row
-    /// or column is a sweep divided by 2 to the [`ROW_BITS`] or [`COLUMN_BITS`], rounded
-    /// down.
+    /// The map whose `count` rows begin at index `start` of `rows`. They are consecutive rows, beginning with number
+    /// `first`; numbers wrap around at the end of the turn. Each row holds its first and its last column, both
+    /// inclusive; if the first is greater than the last, the row is empty. The number of a row or column is a sweep
+    /// divided by 2 to the [`ROW_BITS`] or [`COLUMN_BITS`], rounded down.
     #[inline(always)]
     pub const fn from_rows(first: i8, start: u16, count: u8, rows: Flash<'a, [[i8; 2]]>) -> Self {
         Self {
@@ -57,13 +55,13 @@ impl<'a> Cells<'a> {
         }
     }
 
-    /// A map of all these rows, at most 255.
+    /// A map of all of `rows`, at most 255.
     pub const fn new(first: i8, rows: Flash<'a, [[i8; 2]]>) -> Self {
         Self::from_rows(first, 0, rows.len() as u8, rows)
     }
 
-    /// True if a cell holds this pair of sweeps. A column beyond an `i8`, a quarter of a
-    /// turn from neutral, is in no cell.
+    /// True if a cell contains this pair of sweeps. A column that does not fit an `i8`, a quarter of a turn or more
+    /// from neutral, is in no cell.
     #[inline(always)]
     pub fn contains(&self, row: Sweep, column: Sweep) -> bool {
         let row = ((row.0 >> ROW_BITS) as i8).wrapping_sub(self.first) as u8;
@@ -87,10 +85,10 @@ mod tests {
 
     use super::*;
 
-    /// The same question answered by division and without a shortcut.
+    /// Reference for [`Cells::contains`], by division and without a shortcut.
     fn contains_by_division(first: i8, rows: &[[i8; 2]], row: i16, column: i16) -> bool {
         let row = f64::from(row).div_euclid(256.0) as i32;
-        // A turn has 256 rows, and the one after the last is the first.
+        // A turn has 256 rows; the first row follows the last.
         let row = if row < i32::from(first) {
             row + 256
         } else {
@@ -103,8 +101,8 @@ mod tests {
         })
     }
 
-    /// Columns at and beside every border that rows here have, and a quarter of a turn
-    /// from neutral, where columns end.
+    /// Columns at and beside every border of the rows in these tests, and a quarter of a turn from neutral, where
+    /// columns end.
     const COLUMNS: [i16; 17] = [
         i16::MIN,
         -16_385,
@@ -148,7 +146,7 @@ mod tests {
             [-127, -2],
             [127, -128],
         ];
-        // About neutral, at either end of the turn, and with rows beyond its end.
+        // Maps about neutral, at either end of the turn, and with rows that wrap around its end.
         for first in [-3, 0, -128, 122, 125] {
             agrees(first, &rows);
         }

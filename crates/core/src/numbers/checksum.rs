@@ -1,12 +1,11 @@
-//! The checksum of everything that is stored: the 16-bit CRC with the polynomial x^16 +
-//! x^12 + x^5 + 1 that begins with ones (CRC-16/IBM-3740).
+//! The checksum of all stored data: the 16-bit CRC with the polynomial x^16 + x^12 + x^5 + 1 and all ones as its
+//! initial value (CRC-16/IBM-3740).
 //!
-//! It finds every change of one or two bits in a row of 32 751 bits, every odd number of
-//! changed bits, and all changes within sixteen neighbouring bits; of all other changes
-//! it misses one in 65 536. The crate `crc` takes six times the flash for it; the tests
-//! compare with it.
+//! It detects every change of one or two bits within 32 751 bits, every odd number of changed bits, and all changes
+//! within sixteen neighbouring bits; of all other changes it misses one in 65 536. The `crc` crate would take six
+//! times the flash; the tests compare with it.
 
-/// The checksum of the bytes that were added so far.
+/// The checksum of the bytes added so far.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Checksum(pub u16);
 
@@ -17,8 +16,8 @@ impl Checksum {
     /// The checksum with one more byte.
     #[cfg_attr(target_arch = "avr", inline(never))] // once in flash
     pub const fn and(self, byte: u8) -> Self {
-        // Eight steps at once: the byte meets the sum's high half, and what leaves at the
-        // top comes back where the polynomial has its powers.
+        // Eight bit steps at once: the byte is XORed with the high half of the sum, and the bits shifted out are fed
+        // back at the powers of the polynomial.
         let out = (self.0 >> 8) as u8 ^ byte;
         let out = (out ^ (out >> 4)) as u16;
         Self((self.0 << 8) ^ (out << 12) ^ (out << 5) ^ out)

@@ -1,21 +1,19 @@
-//! The triangle of the two couplers over the line between the crank tips.
+//! The triangle formed by the two couplers and the line between the crank tips.
 //!
-//! Couplers of lengths `a` (left) and `b` (right) meet in the end point, the head or the
-//! tail. How they lean depends only on the squared distance `s` of the crank tips. The
-//! margins need just two functions of `s`:
+//! Couplers of lengths `a` (left) and `b` (right) meet in the end point, the head or the tail. The shape of the
+//! triangle depends only on the squared distance `s` of the crank tips. The margins need just two functions of `s`:
 //!
 //! ```text
 //! rise = 2 height / distance    = sqrt((R - s) (s - N)) / s    R = (a + b)^2, N = (a - b)^2
 //! skew = 2 foot / distance - 1  = (a^2 - b^2) / s              0 for equal couplers
 //! ```
 //!
-//! (height and foot of the end point over the line, the foot counted from the left crank
-//! tip; Heron's formula gives the height.) Both are read from a [`Curve`]. At either end
-//! of its range the rise falls to zero like a square root, too steeply for a table over
-//! `s`. There it is a function of the distance from that end, `R - s` or `s - N`, with
-//! its own table. A robot that cannot reach that end does not have this table. The rise
-//! is largest at `s = 2 R N / (R + N)`, below `2 N`; the table over `s` is read from
-//! there on, where it falls, and stays at the largest rise below.
+//! (height and foot of the end point over the line, the foot counted from the left crank tip; Heron's formula gives
+//! the height.) Both are read from a [`Curve`]. At either end of its range the rise falls to zero like a square root,
+//! too steeply for a table over `s`. There it is a function of the distance from that end, `R - s` or `s - N`, with
+//! its own table. A robot that cannot reach that end does not have this table. The rise is largest at
+//! `s = 2 R N / (R + N)`, which is below `2 N`. The table over `s` holds the falling part above that point; below it,
+//! the table holds the largest rise.
 
 use lizard_avr::Flash;
 
@@ -26,18 +24,17 @@ use crate::numbers::curve::{Curve, OCTAVES, Table, argument};
 pub struct Tables<'a> {
     /// The rise over `s`, made by [`rise`].
     pub rise: Option<Flash<'a, Table>>,
-    /// The rise over `R - s`, made by [`stretched`]; for a loop whose crank tips
-    /// part so far that [`Couplers::is_near_stretched`].
+    /// The rise over `R - s`, made by [`stretched`]; for a loop whose crank tips can be so far apart that
+    /// [`Couplers::is_near_stretched`] is true.
     pub stretched: Option<Flash<'a, Table>>,
-    /// The rise over `s - N`, made by [`folded`]; for couplers that
-    /// [`Couplers::differ_much`].
+    /// The rise over `s - N`, made by [`folded`]; for couplers for which [`Couplers::differ_much`] is true.
     pub folded: Option<Flash<'a, Table>>,
     /// The skew over `s`, made by [`skew`]; for unequal couplers.
     pub skew: Option<Flash<'a, Table>>,
 }
 
 impl Tables<'_> {
-    /// No tables, so that no lean is known.
+    /// No tables: every lean is unknown.
     pub const NONE: Self = Self {
         rise: None,
         stretched: None,
@@ -47,16 +44,16 @@ impl Tables<'_> {
 }
 
 lizard_avr::plain! {
-    /// The lengths of two couplers of one loop, in its steps, and what follows from them.
+    /// The lengths of the two couplers of a loop, in its steps, and values derived from them.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Coupling {
         left: i16,
         right: i16,
-        /// `R` in steps of `s`, a quarter of the bars' squared ones.
+        /// `R` in the steps of `s`, each a quarter of a squared step of the bars.
         reach_sq: u32,
         /// `N` in the same steps.
         least_sq: u32,
-        /// Leading zeros of both.
+        /// Leading zeros of the two squares above.
         reach_zeros: u16,
         least_zeros: u16,
     }
@@ -101,7 +98,7 @@ impl Coupling {
     }
 }
 
-/// Two couplers of one loop, and the tables that belong to them.
+/// The two couplers of a loop, and their tables.
 #[derive(Clone, Copy)]
 pub struct Couplers<'a> {
     lengths: Coupling,
@@ -118,29 +115,28 @@ pub struct Lean {
 }
 
 impl<'a> Couplers<'a> {
-    /// Couplers of these lengths, in the steps of their loop, with their tables. A lean that
-    /// needs a missing table is not known.
+    /// Couplers of these lengths, in the steps of their loop, with their tables. A lean that needs a missing table is
+    /// unknown.
     pub const fn new(lengths: Coupling, tables: Tables<'a>) -> Self {
         Self { lengths, tables }
     }
 
-    /// True for couplers whose difference alone keeps the crank tips so far apart that
-    /// the margins are known next to it: there the rise is read from the table of
-    /// folded couplers. For other couplers, [`Couplers::at`] has no value so near.
+    /// True for couplers whose difference alone keeps the crank tips so far apart that the margins are known up to
+    /// the folded position: there the rise is read from the table of folded couplers. For other couplers,
+    /// [`Couplers::at`] returns `None` so near to it.
     pub const fn differ_much(left: i16, right: i16) -> bool {
         Coupling::new(left, right).differs_much()
     }
 
-    /// True where the squared distance of the crank tips is beyond three quarters
-    /// of `R`: there the rise is read from the table of stretched couplers.
+    /// True if the squared distance of the crank tips is above three quarters of `R`: there the rise is read from the
+    /// table of stretched couplers.
     pub const fn is_near_stretched(left: i16, right: i16, tips_sq: u32) -> bool {
         is_near_stretched(reach_sq(left, right), tips_sq)
     }
 
-    /// The lean at a squared distance of the crank tips in steps of 1/4 of the
-    /// bars' squared ones. `None` where the couplers do not close the loop, or so
-    /// near to that, or to coinciding crank tips, that the type-2 margin is below
-    /// a tenth, the least limit that a robot may have.
+    /// The lean at a squared distance of the crank tips, in quarters of a squared step of the bars. `None` if the
+    /// couplers do not close the loop. Also `None` so near to that limit, or to coinciding crank tips, that the
+    /// type-2 margin is below a tenth, the smallest limit that a robot may have.
     #[inline(always)]
     pub fn at(&self, tips_sq: u32) -> Option<Lean> {
         let Self { lengths, tables } = self;
@@ -210,7 +206,7 @@ pub fn folded(left: i16, right: i16) -> Table {
 /// The size of the skew over `s`; made by a host.
 pub fn skew(left: i16, right: i16) -> Table {
     let reach_sq = reach_sq(left, right);
-    // a^2 - b^2 in the steps of `s`, a quarter of the bars' squared ones.
+    // a^2 - b^2 in the steps of `s`, each a quarter of a squared step of the bars.
     let difference = (i64::from(left).pow(2) - i64::from(right).pow(2)).unsigned_abs() / 4;
     core::array::from_fn(|index| {
         let tips_sq = argument(reach_sq, index);
@@ -219,8 +215,7 @@ pub fn skew(left: i16, right: i16) -> Table {
     })
 }
 
-/// `sqrt((R - s)(s - N)) / s` in Q10, to nearest where `round` is 1, down where
-/// it is 0; 0 outside of N..R.
+/// `sqrt((R - s)(s - N)) / s` in Q10, rounded to nearest if `round` is 1, down if it is 0; 0 outside of N..R.
 fn rise_q10(reach_sq: u32, least_sq: u32, tips_sq: u64, round: u128) -> i16 {
     let (reach_sq, least_sq) = (u64::from(reach_sq), u64::from(least_sq));
     if tips_sq >= reach_sq || tips_sq <= least_sq {
@@ -233,20 +228,20 @@ fn rise_q10(reach_sq: u32, least_sq: u32, tips_sq: u64, round: u128) -> i16 {
     rise.min(0x7fff) as i16
 }
 
-/// Computes `R` in steps of `s`, a quarter of the bars' squared ones.
+/// Computes `R` in the steps of `s`, each a quarter of a squared step of the bars.
 const fn reach_sq(left: i16, right: i16) -> u32 {
     let sum = left as u32 + right as u32;
-    // Half of the sum squared; of equal couplers exactly the coupler squared.
+    // A quarter of the squared sum, rounded down; for equal couplers exactly the squared coupler.
     sum / 2 * (sum / 2) + if sum % 2 == 1 { sum / 2 } else { 0 }
 }
 
-/// `N` in steps of `s`.
+/// Computes `N` in the steps of `s`.
 const fn least_sq(left: i16, right: i16) -> u32 {
     let difference = left.abs_diff(right) as u32;
     difference * difference / 4
 }
 
-/// The squared distance at which the rise is largest, in steps of `s`.
+/// The value of `s` at which the rise is largest.
 fn peak_sq(left: i16, right: i16) -> u32 {
     let (reach_sq, least_sq) = (reach_sq(left, right) as u64, least_sq(left, right) as u64);
     (2 * reach_sq * least_sq / (reach_sq + least_sq)) as u32

@@ -1,26 +1,25 @@
 //! A smooth function of a squared length, from a table in flash.
 //!
-//! A root and a quotient cost 2 800 cycles in every frame. What the five-bar needs of
-//! them depends on a single squared length, so a table is enough: sixteen steps to an
-//! octave of the argument, with straight lines in between. Any function that varies as a
-//! power of its argument is then accurate to a few parts in ten thousand, near zero as
-//! well as far from it.
+//! A root and a quotient would cost 2 800 cycles in every frame. The functions that the five-bar needs depend on a
+//! single squared length, so a table is enough: sixteen steps to an octave of the argument, with straight lines in
+//! between. Any function that varies as a power of its argument is then accurate to a few parts in ten thousand, near
+//! zero as well as far from it.
 
 use lizard_avr::{Flash, mul_unsigned};
 
-/// Steps to an octave of the argument.
+/// Steps in an octave of the argument.
 const STEPS: usize = 16;
 
-/// Octaves below the one that the largest argument is in.
+/// Octaves below that of the largest argument.
 pub const OCTAVES: u32 = 10;
 
-/// Number of entries: all octaves, and the end of the last.
+/// Number of entries: the steps of all octaves, and the end of the last octave.
 pub const ENTRIES: usize = STEPS * (OCTAVES as usize + 1) + 1;
 
-/// The entries of a function.
+/// The table of a function.
 pub type Table = [i16; ENTRIES];
 
-/// A function in flash.
+/// A function whose table is in flash.
 #[derive(Clone, Copy)]
 pub struct Curve<'a> {
     table: Flash<'a, Table>,
@@ -53,7 +52,8 @@ impl<'a> Curve<'a> {
         self.read(argument, 0x8000)
     }
 
-    /// Interpolates the value; `round` is added to a change before its lower half is dropped.
+    /// Interpolates the value; `round` is added to the difference from the entry before its lower 16 bits are
+    /// dropped.
     #[inline(never)]
     fn read(&self, argument: u32, round: u16) -> Option<i16> {
         let mut mantissa = argument;
@@ -62,7 +62,7 @@ impl<'a> Curve<'a> {
             mantissa <<= 1;
             octave = octave.checked_sub(1)?;
         }
-        // Bits below the leading one: four for the step, sixteen for the way in it.
+        // Bits below the leading one: four for the step, then sixteen for the position within it.
         let step = (mantissa >> 24) as u8 >> 3 & (STEPS as u8 - 1);
         let part = ((mantissa << 5) >> 16) as u16;
         let index = usize::from(octave) * STEPS + usize::from(step);
@@ -77,8 +77,8 @@ impl<'a> Curve<'a> {
     }
 }
 
-/// The argument that an entry of a table is for, where `largest` is the largest;
-/// rounded down, which only a `largest` below 16384 ever needs.
+/// The argument of a table's entry if the largest argument is `largest`, rounded down; only a `largest` below 16384
+/// needs the rounding.
 pub const fn argument(largest: u32, index: usize) -> u64 {
     let (lowest, place) = (lowest(largest) as usize, 31 + index / STEPS);
     if place < lowest {
@@ -87,7 +87,7 @@ pub const fn argument(largest: u32, index: usize) -> u64 {
     ((STEPS + index % STEPS) as u64) << (place - lowest) >> 4
 }
 
-/// Leading zeros of an argument in the first octave.
+/// The number of leading zeros of an argument in the first octave.
 const fn lowest(largest: u32) -> u8 {
     (largest.leading_zeros() + OCTAVES) as u8
 }
@@ -98,7 +98,7 @@ mod tests {
     use lizard_avr::Flash;
     use proptest::prelude::*;
 
-    /// The table of a function of the argument's share of the largest.
+    /// Makes the table of `function`, whose argument is a share of the largest one.
     fn table(largest: u32, function: impl Fn(f64) -> f64) -> Table {
         core::array::from_fn(|index| {
             let share = argument(largest, index) as f64 / f64::from(largest);
@@ -134,13 +134,13 @@ mod tests {
             }
             let exact = function(f64::from(argument) / f64::from(largest));
             let actual = f64::from(curve.at(argument).expect("within its octaves"));
-            // A step of a sixteenth bends the logarithm by 2.2; two roundings.
+            // Within a step of 1/16 octave, the logarithm bends by 2.2; two roundings are added.
             prop_assert!((actual - exact).abs() <= 4.0, "{argument} of {largest}: {actual}, {exact}");
         }
 
         #[test]
         fn an_entry_is_met_exactly_at_its_argument(
-            // Below, sixteen steps of the first octaves are not all whole numbers.
+            // For a smaller `largest`, the sixteen steps of the first octaves are not all whole numbers.
             largest in 1u32 << 14..,
             index in 0..ENTRIES,
         ) {
@@ -176,7 +176,7 @@ mod tests {
         let table = [7; ENTRIES];
         for largest in [0, 1, 1023, 1024, 5000, 1 << 20, u32::MAX] {
             let curve = Curve::new(Flash::from(&table), largest);
-            // The table begins with the whole octave of its smallest argument.
+            // The table covers the entire octave of its smallest argument.
             let min: u32 = (largest >> OCTAVES)
                 .checked_ilog2()
                 .map_or(0, |octave| 1 << octave);

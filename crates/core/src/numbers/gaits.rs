@@ -1,24 +1,24 @@
-//! The gaits of a robot as its section has them: waveforms, channels, names.
+//! The gaits of a robot as they are stored in its section: waveforms, channels, names.
 
 use lizard_avr::Flash;
 
 /// Samples of a waveform.
 pub const SAMPLES: usize = 64;
 
-/// The longest name of a gait, with which `status` still fits a line of the console.
+/// The largest length of a gait's name; `status` with such a name still fits a line of the console.
 pub const MAX_NAME_BYTES: usize = 48;
 
-/// The most gaits that a robot may have: a byte numbers them.
+/// The largest number of gaits of a robot, since an index is a byte.
 pub const MAX_GAITS: usize = 255;
 
-/// The most waveforms that gaits may share: a byte numbers them.
+/// The largest number of waveforms of a robot, since an index is a byte.
 pub const MAX_WAVES: usize = 255;
 
-/// Samples over a cycle, 1/65536 turn at a gain of 1.
+/// The samples of a waveform over one cycle, in 1/65536 turn at a gain of 1.
 pub type Wave = [i16; SAMPLES];
 
-/// A gait's name, byte by byte from flash, its words with a blank in between: also
-/// its console command.
+/// A gait's name, read byte by byte from flash: one or more words with a blank in between. It is also the gait's
+/// console command.
 #[derive(Clone, Copy)]
 pub struct Name<'a> {
     names: Flash<'a, [u8]>,
@@ -57,7 +57,7 @@ lizard_avr::plain! {
     /// The motion of one servo in a gait.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Channel {
-        /// The number of the waveform.
+        /// The index of the waveform.
         pub wave: u16,
         /// The lead of the servo's phase over that of the gait, 1/65536 cycle.
         pub offset: u16,
@@ -67,16 +67,15 @@ lizard_avr::plain! {
 }
 
 lizard_avr::plain! {
-    /// A gait, or a routine, whose record has the same fields and no gain.
+    /// A gait, or a routine, whose record has the same fields; a routine has no gain.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Gait {
-        /// Phase in 1/2^24 cycle for each frame at full pace; negative where the
-        /// table is read backwards. 0 for a routine.
+        /// The change of the phase in each frame at full pace, in 1/2^24 cycle; negative if the waveform is read
+        /// backwards. 0 for a routine.
         pub increment: i32,
-        /// The channels of the four servos. In a routine the first offset is the address of the
-        /// first [`Step`] in the section, the second the number of steps, the third the number
-        /// of rounds, 0 without end, and the fourth the number of the step at which each round
-        /// but the first begins.
+        /// The channels of the four servos. A routine stores other numbers in the four offsets: the address of its
+        /// first [`Step`] in the section, the number of steps, the number of rounds (0 for no end), and the index of
+        /// the step at which each round except the first begins.
         pub channels: [Channel; 4],
         /// The index of the name's first byte among the names of the robot.
         pub name_start: u16,
@@ -91,27 +90,27 @@ lizard_avr::plain! {
     pub struct Step {
         /// The kind of step, one of the constants of [`Step`].
         pub kind: u8,
-        /// The index of the gait; of [`Step::UNTIL`] the [`Input`].
+        /// The index of the gait; for [`Step::UNTIL`], the [`Input`].
         pub gait: u8,
-        /// The duration in cycles of the gait or in frames; [`Step::ENDLESS`] frames do not end.
+        /// The duration, in cycles of the gait or in frames; [`Step::ENDLESS`] frames do not end.
         pub count: u16,
     }
 }
 
 impl Step {
-    /// A gait for so many cycles.
+    /// Runs a gait for `count` cycles.
     pub const CYCLES: u8 = 0;
 
-    /// A gait for so many frames, the move to it included.
+    /// Runs a gait for `count` frames, including the move to it.
     pub const FRAMES: u8 = 1;
 
-    /// No pulses for so many frames, at least one.
+    /// Stops the pulses for `count` frames, at least one.
     pub const REST: u8 = 2;
 
-    /// The robot stands still until the contact of the record before this one closes.
+    /// The robot stands still until a contact closes; the record before this one names that contact.
     pub const WAIT: u8 = 3;
 
-    /// A record in front of a step: a contact that ends it, before its count or time is over.
+    /// A record in front of a step. It names a contact that ends the step before its count or time is over.
     pub const UNTIL: u8 = 4;
 
     /// The frames of a step that only its contact ends.
@@ -126,7 +125,7 @@ impl Input {
     /// No input.
     pub const NONE: Self = Self(0);
 
-    /// The bit by which the nose is told from the button.
+    /// The bit that is set for the nose and clear for a button.
     const NOSE: u8 = 0x80;
 
     /// The button at the pin with this Arduino number; 14 to 19 are A0 to A5.
@@ -160,8 +159,8 @@ impl Input {
     }
 }
 
-/// A gait or a routine by its index in the section: the gaits in the order of robot.toml, then
-/// the routines. Index 0 is `stand`.
+/// The index of a gait or a routine in the section: first the gaits in the order of robot.toml, then the routines.
+/// Index 0 is `stand`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GaitId(u8);
 
@@ -169,7 +168,7 @@ impl GaitId {
     /// The gait that holds the neutral pose.
     pub const STAND: Self = Self(0);
 
-    /// All gaits of a robot that has `count` of them, in their order.
+    /// Iterates over the ids of all `count` gaits of a robot, in their order.
     pub fn all(count: usize) -> impl Iterator<Item = Self> {
         (0..count as u8).map(Self)
     }
@@ -184,7 +183,7 @@ impl GaitId {
         self.0 as usize
     }
 
-    /// The next of `count` gaits, if there is one.
+    /// The id after this one, or `None` if this is the last of `count` gaits.
     pub fn next(self, count: usize) -> Option<Self> {
         (self.index() + 1 < count).then(|| Self(self.0 + 1))
     }
@@ -201,7 +200,7 @@ impl Gait {
         routine
     }
 
-    /// True for a routine.
+    /// True if this is a routine.
     pub const fn is_routine(&self) -> bool {
         self.increment == 0
     }

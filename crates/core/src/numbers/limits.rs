@@ -1,4 +1,4 @@
-//! The limits that a pose must keep to.
+//! The limits of a pose's margins.
 
 use crate::numbers::units::Sine;
 
@@ -6,11 +6,11 @@ lizard_avr::plain! {
     /// The smallest margins allowed; a margin at its limit is safe.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Limits {
-        /// The margin between the couplers of head and tail, at least a tenth.
+        /// The limit of the margin between the couplers of head and tail, at least a tenth.
         pub type2: Sine,
-        /// The margin between each crank and its coupler, not negative.
+        /// The limit of the margin between each crank and its coupler, not negative.
         pub type1: Sine,
-        /// The margin of each parallelogram leg, not negative.
+        /// The limit of the margin of each parallelogram leg, not negative.
         pub leg: Sine,
     }
 }

@@ -1,10 +1,9 @@
-//! The mark of the code, by which others see what sections it reads before it runs.
+//! The mark of the firmware in flash, by which other programs see which section format it reads.
 //!
-//! A program that writes a robot alone talks to the boot loader, while the firmware does not
-//! run and cannot be asked. The robot is of use only to code that reads its format. So
-//! the code has a mark at a fixed address: after the interrupt vectors, in the first
-//! page of flash. Whatever else is written to a board overwrites that page, so no other
-//! program can have the mark of an older one.
+//! A program that writes only a robot talks to the boot loader; the firmware does not run then and cannot be asked.
+//! The robot is useful only to firmware that reads its format. So the firmware has a mark at a fixed address: after
+//! the interrupt vectors, in the first page of flash. Any other program written to the board overwrites that page, so
+//! it cannot be mistaken for the firmware because of an old mark.
 //!
 //! ```
 //! use lizard_core::numbers::mark::{AT, Mark};
@@ -21,10 +20,10 @@ use crate::numbers::section::{FORMAT, MAGIC};
 /// table 12-6).
 pub const AT: usize = 26 * 4;
 
-/// Bytes of the mark.
+/// The length of the mark, bytes.
 pub const LENGTH: usize = 10;
 
-/// The mark: format and version of the code.
+/// The mark: section format and version of the firmware.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mark {
     /// The [`FORMAT`] of the sections that the code reads.
@@ -34,7 +33,7 @@ pub struct Mark {
 }
 
 impl Mark {
-    /// The mark of this code.
+    /// The mark of this firmware.
     pub const HERE: Self = Self {
         format: FORMAT,
         version: [
@@ -52,7 +51,7 @@ impl Mark {
         [a, b, c, d, low, high, major, minor, patch, 0]
     }
 
-    /// Reads the mark of a flash that begins with a lizard's code; `None` for any other.
+    /// Reads the mark of a flash that begins with this project's firmware; `None` for any other.
     pub fn find(flash: &[u8]) -> Option<Self> {
         let bytes = flash.get(AT..AT + LENGTH)?;
         let (magic, rest) = bytes.split_first_chunk()?;

@@ -1,7 +1,6 @@
-//! The numbers of a robot: units, types without behaviour, and the section of flash that
-//! they come from.
+//! The numbers of a robot: units, types without behaviour, and the flash section that holds them.
 //!
-//! The room at the bottom: every other room uses it, and it uses none.
+//! The lowest module of the crate: every other module uses it, and it uses none of them.
 
 pub mod bars;
 pub mod calibration;

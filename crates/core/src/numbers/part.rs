@@ -1,6 +1,6 @@
 //! The names of the robot's parts: servos, ends and sides.
 
-/// A servo; the order of every array of four.
+/// A servo; every array of four has this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Servo {
@@ -61,19 +61,19 @@ impl Servo {
         self as usize
     }
 
-    /// The servo's element of an array in that order.
+    /// The element that belongs to this servo in an array in servo order.
     pub const fn of<T>(self, four: &[T; 4]) -> &T {
         &four[self as usize]
     }
 
-    /// The servo's element of an array in that order, mutable.
+    /// The element that belongs to this servo in an array in servo order, mutable.
     pub const fn of_mut<T>(self, four: &mut [T; 4]) -> &mut T {
         &mut four[self as usize]
     }
 }
 
 impl End {
-    /// The servos of its left crank and of its right one, in its own frame.
+    /// The servos of the left and of the right crank, in the frame of this end.
     pub const fn servos(self) -> [Servo; 2] {
         match self {
             Self::Head => [Servo::A1, Servo::A2],
@@ -86,7 +86,7 @@ impl End {
 }
 
 impl Side {
-    /// The servos of its front crank and of its rear one.
+    /// The servos of the front and of the rear crank.
     pub const fn servos(self) -> [Servo; 2] {
         match self {
             Self::Left => [Servo::A1, Servo::A4],

@@ -1,7 +1,7 @@
 //! A pose of the robot: the sweeps of the four servos from their neutral angles.
 //!
-//! The horns are fitted while the servos hold their neutral pulse. So a sweep is the
-//! angle that the servo really turns, and a chassis angle can be read off the robot.
+//! The horns are fitted while the servos hold their neutral pulse width. So a sweep is the angle that the servo
+//! really turns, and a chassis angle can be measured on the robot.
 //! Order everywhere: A1 = theta1 front left, A2 = theta4 front right, A3 = theta8 back
 //! right, A4 = theta5 back left.
 
@@ -21,8 +21,7 @@ impl Pose {
     /// All servos at their neutral angle: the robot stands.
     pub const NEUTRAL: Self = Self([Sweep(0); 4]);
 
-    /// The pose at four chassis angles of servos with these neutral ones; within the
-    /// travel or not.
+    /// The pose for four chassis angles, with the servos' neutral angles; it may be beyond the travel.
     pub fn at(angles: &[Angle; 4], neutral: &[Angle; 4]) -> Self {
         let mut pose = Self::NEUTRAL;
         for (sweep, (angle, neutral)) in pose.0.iter_mut().zip(angles.iter().zip(neutral)) {
@@ -59,7 +58,7 @@ impl Pose {
         pulses
     }
 
-    /// The longest turn of any servo to `other`, in 1/65536 turn.
+    /// The largest turn of any servo between this pose and `other`, in 1/65536 turn.
     pub fn farthest(&self, other: &Self) -> u16 {
         let mut largest = 0;
         for (from, to) in self.0.iter().zip(&other.0) {

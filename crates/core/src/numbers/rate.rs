@@ -1,6 +1,6 @@
-//! The rates of the serial line.
+//! The baud rates of the serial line.
 
-/// A rate of the serial line, from the fastest to the slowest. The number survives a reset.
+/// A baud rate of the serial line, from the fastest to the slowest. Its number survives a reset.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Rate {
@@ -11,7 +11,7 @@ pub enum Rate {
     Half,
     /// 38 400 baud.
     Third,
-    /// 9600 baud, the rate of most radio modules when they are new.
+    /// 9600 baud, the factory setting of most radio modules.
     Slowest,
 }
 
@@ -19,7 +19,7 @@ impl Rate {
     /// All rates, in the order in which they are tried.
     pub const ALL: [Self; 4] = [Self::Fastest, Self::Half, Self::Third, Self::Slowest];
 
-    /// The rate, baud.
+    /// The rate in baud.
     pub const fn baud(self) -> u32 {
         match self {
             Self::Fastest => 115_200,
@@ -29,7 +29,7 @@ impl Rate {
         }
     }
 
-    /// The rate of this number, modulo 4.
+    /// The rate with this number, modulo 4.
     pub const fn at(number: u8) -> Self {
         match number & 3 {
             0 => Self::Fastest,
@@ -39,7 +39,7 @@ impl Rate {
         }
     }
 
-    /// The next slower rate; after the slowest the fastest.
+    /// The next slower rate; after the slowest, the fastest.
     pub const fn next(self) -> Self {
         Self::at(self as u8 + 1)
     }

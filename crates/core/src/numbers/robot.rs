@@ -1,9 +1,8 @@
 //! A robot's numbers, read from its section of flash.
 //!
-//! The same core walks any lizard: bars, limits, servos and gaits come from a section
-//! ([`crate::numbers::section`]) that lies in the flash of a microcontroller or in the memory of a
-//! host. The section is checked once, when it is opened; each number is fetched when it
-//! is needed.
+//! One firmware drives any robot: bars, limits, servos and gaits come from a section ([`crate::numbers::section`]) in
+//! the flash of a microcontroller or in the memory of a host. The section is checked once, when it is opened; each
+//! number is read when it is needed.
 
 use core::fmt;
 use core::mem::offset_of;
@@ -32,7 +31,7 @@ pub struct Robot<'a> {
     is_there: bool,
 }
 
-// Its numbers are left out: they are the same in every state of a program.
+// The numbers are omitted: they are the same in every state of a program.
 impl fmt::Debug for Robot<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(if self.is_there { "Robot" } else { "no robot" })
@@ -55,20 +54,19 @@ impl<'a> Robot<'a> {
         }
     }
 
-    /// The robot of a section that was just made, whose numbers nobody has checked yet:
-    /// for the code that is about to check them.
+    /// The robot of a newly made section whose numbers are not checked yet; for the code that checks them.
     #[cfg(any(test, feature = "host"))]
     pub fn unchecked(flash: Region<'a>) -> Option<Self> {
         let length = section::find(flash).ok()?;
         Some(Self::at(flash.first(length)))
     }
 
-    /// True for no robot.
+    /// True if there is no robot.
     pub const fn is_none(&self) -> bool {
         !self.is_there
     }
 
-    /// The flash at whose beginning its section is.
+    /// The flash region that is exactly its section.
     pub const fn section(&self) -> Region<'a> {
         self.section
     }
@@ -88,7 +86,7 @@ impl<'a> Robot<'a> {
             .take_while(|byte| *byte != 0)
     }
 
-    /// The hash of the robot's numbers, by which robots are told apart.
+    /// The hash of the robot's numbers, which identifies the robot.
     pub fn hash(&self) -> u32 {
         self.section.read(offset_of!(Header, hash) as u16)
     }
@@ -111,7 +109,7 @@ impl<'a> Robot<'a> {
         }
     }
 
-    /// Percent of their own pace to which a low supply limits gaits.
+    /// The percentage of their own pace to which a low supply limits gaits.
     pub fn slow_pace(&self) -> u8 {
         self.number(offset_of!(Numbers, slow_pace))
     }
@@ -121,7 +119,7 @@ impl<'a> Robot<'a> {
         self.number(offset_of!(Numbers, ends) + end as usize * size_of::<Bars>())
     }
 
-    /// The curves of an end's couplers.
+    /// The tables of an end's couplers.
     pub(crate) fn tables(&self, end: End) -> Tables<'a> {
         let curves = offset_of!(Numbers, curves) + end as usize * size_of::<[u16; CURVES]>();
         let table = |curve: usize| match self.number(curves + curve * size_of::<u16>()) {
@@ -136,7 +134,7 @@ impl<'a> Robot<'a> {
         }
     }
 
-    /// The five-bar with a slider of a side, as it is in the chassis frame.
+    /// The five-bar with a slider on one side, in the chassis frame.
     pub fn side(&self, side: Side) -> Slider {
         self.number(offset_of!(Numbers, sides) + side as usize * size_of::<Slider>())
     }
@@ -162,24 +160,24 @@ impl<'a> Robot<'a> {
         self.number(offset_of!(Numbers, neutral) + servo.index() * size_of::<Angle>())
     }
 
-    /// The servos' pulses and travel, as robot.toml has them.
+    /// The pulse widths and the travel of the servos, as robot.toml defines them.
     pub fn calibration(&self) -> [Calibration; 4] {
         self.number(offset_of!(Numbers, calibration))
     }
 
-    /// The pulses and the travel of one servo.
+    /// The pulse widths and the travel of one servo.
     #[inline(never)]
     pub fn servo(&self, servo: Servo) -> Calibration {
         self.number(offset_of!(Numbers, calibration) + servo.index() * size_of::<Calibration>())
     }
 
-    /// The sweeps that the gaits and the neutral pose need of a servo.
+    /// The range of sweeps that the gaits and the neutral pose need of a servo.
     #[inline(never)]
     pub fn reach(&self, servo: Servo) -> Reach {
         self.number(offset_of!(Numbers, reach) + servo.index() * size_of::<Reach>())
     }
 
-    /// The supplies that are measured, and their thresholds.
+    /// The measured supplies and their thresholds.
     pub fn supplies(&self) -> Supplies {
         self.number(offset_of!(Numbers, supplies))
     }
@@ -227,7 +225,7 @@ impl<'a> Robot<'a> {
     /// The name of a gait or a routine.
     #[inline(never)]
     pub fn name(&self, id: GaitId) -> Name<'a> {
-        // Not the whole gait: a line may be compared with every name.
+        // Reads only these fields, not the entire gait: a line may be compared with every name.
         let gait = self.place(Part::Gaits).at + id.index() as u16 * size_of::<Gait>() as u16;
         let number = |field: usize| self.section.read(gait + field as u16);
         let start = number(offset_of!(Gait, name_start));
@@ -235,8 +233,8 @@ impl<'a> Robot<'a> {
         Name::of(start, length, self.part(Part::Names))
     }
 
-    /// True if a pose is in certified cells, in which the guard accepts every pose: head, tail,
-    /// left and right have a map each. A pose outside may be safe, too.
+    /// True if a pose is in certified cells, in which the guard accepts every pose. Head, tail, left and right have a
+    /// map each, and the pose must be in a cell of all four. A pose outside of them may be safe, too.
     pub fn is_certified(&self, pose: &Pose) -> bool {
         let maps = self.part::<[i8; 2]>(Part::Rows);
         let mut first_row = 0;
@@ -258,6 +256,6 @@ impl<'a> Robot<'a> {
 }
 
 lizard_avr::flash! {
-    /// The servos of each map: first that of the rows, then that of the columns.
+    /// The servos of each map: first the one of the rows, then the one of the columns.
     const PAIRS: [[u8; 2]; 4] = [[0, 1], [2, 3], [0, 3], [1, 2]];
 }

@@ -1,15 +1,14 @@
-//! A square root and a quotient, in integers and bit by bit.
+//! A square root and a quotient, computed in integers bit by bit.
 //!
-//! The five-bar's closed form needs one root; a voltage and the end of a travel are
-//! quotients. The chip can compute neither, and the compiler's 32-bit division takes a
-//! kilobyte.
+//! The five-bar's closed form needs one root; a voltage and the end of a travel are quotients. The chip has an
+//! instruction for neither, and the compiler's 32-bit division takes a kilobyte.
 
 use lizard_avr::mul_unsigned;
 
 /// The largest integer whose square is at most `square`.
 ///
-/// Digit by digit, one result bit a step: no division and no start value, the
-/// same number of steps for every input.
+/// Computes one result bit per step, without a division or a start value, in the same number of steps for every
+/// input.
 pub const fn root(square: u32) -> u16 {
     let mut rest = square;
     let mut root: u32 = 0;
@@ -26,7 +25,7 @@ pub const fn root(square: u32) -> u16 {
     root as u16
 }
 
-/// `dividend / divisor`, rounded down; 65535 where it is more, or the divisor 0.
+/// `dividend / divisor`, rounded down; 65535 if it is larger or the divisor is 0.
 #[inline(never)]
 pub fn quotient(dividend: u32, divisor: u16) -> u16 {
     let (mut rest, mut quotient) = (dividend, 0);

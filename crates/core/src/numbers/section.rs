@@ -1,10 +1,9 @@
-//! The robot's section of flash: all that robot.toml tells the firmware, as data.
+//! The robot's section of flash: everything that the firmware needs of robot.toml, as data.
 //!
-//! The firmware is one image for any lizard. What differs from robot to robot lies after it, at
-//! a fixed address, and can be written without a compiler. That flash may hold anything: erased
-//! bytes, half an upload, a section of another version, a byte that changed over the
-//! years. So nothing in it is trusted before [`crate::numbers::robot::Robot::open`] has checked
-//! header, length and CRC, and every index and count.
+//! The firmware is one image for any robot. The numbers that differ from robot to robot are at a fixed address after
+//! it, and can be written without a compiler. That flash may hold anything: erased bytes, half an upload, a section
+//! of another version, a byte that has changed over the years. So nothing in it is used before
+//! [`crate::numbers::robot::Robot::open`] has checked header, length and CRC, and every index and count.
 //!
 //! | part | bytes | what |
 //! |---|---|---|
@@ -17,8 +16,8 @@
 //! | names | | of the gaits, one after the other |
 //! | maps | 2 a row | certified cells of head, tail, left and right: first and last column |
 //!
-//! Each part is the type that is named, field by field, low bytes first. The device needs
-//! no arithmetic for any of it: what follows from the bars is there, too.
+//! Each part is stored as the type named in the table, field by field, low bytes first. The device computes nothing
+//! from it in advance: the factors that follow from the bars are stored, too.
 
 use core::mem::offset_of;
 
@@ -53,7 +52,7 @@ pub const MAGIC: u32 = u32::from_le_bytes(*b"LZRD");
 /// The section's address in flash, and its largest size in bytes.
 pub use lizard_avr::{SPACE, START};
 
-/// The longest name of a robot.
+/// The longest name of a robot, bytes.
 pub const MAX_NAME_BYTES: usize = 18;
 
 lizard_avr::plain! {
@@ -64,15 +63,15 @@ lizard_avr::plain! {
         pub magic: u32,
         /// The section's format, [`FORMAT`].
         pub format: u16,
-        /// Bytes of the section, this header among them.
+        /// Bytes of the section, including this header.
         pub length: u16,
-        /// The [`Checksum`] of all bytes after it.
+        /// The [`Checksum`] of all bytes of the section after this field.
         pub crc: u16,
         /// The robot's name, filled up with zeros.
         pub name: [u8; MAX_NAME_BYTES],
-        /// The hash by which robots are told apart: CRC-32 of all but header and maps.
+        /// The hash that identifies the robot: CRC-32 of everything except header and maps.
         pub hash: u32,
-        /// The hash by which saved settings are matched with servos.
+        /// The hash that tells if saved settings belong to these servos.
         pub servo_hash: u32,
     }
 }
@@ -87,9 +86,9 @@ lizard_avr::plain! {
         pub sides: [Slider; 2],
         /// The servos' angles in the neutral pose.
         pub neutral: [Angle; 4],
-        /// The servos' pulses and travel.
+        /// The pulse widths and the travel of the servos.
         pub calibration: [Calibration; 4],
-        /// The sweeps that the gaits need of the servos.
+        /// The range of sweeps that the gaits need of each servo.
         pub reach: [Reach; 4],
         /// The smallest margins that are allowed.
         pub limits: Limits,
@@ -97,28 +96,28 @@ lizard_avr::plain! {
         pub slew: Slew,
         /// The supplies and their thresholds.
         pub supplies: Supplies,
-        /// The addresses of the couplers' curves for head and tail: rise, stretched, folded,
-        /// skew; 0 for one that is not needed.
+        /// The addresses of the couplers' tables for head and tail: rise, stretched, folded, skew; 0 for one that is
+        /// not needed.
         pub curves: [[u16; CURVES]; 2],
         /// The parts, in the order of [`Part`].
         pub parts: [Place; PARTS],
-        /// The Arduino number of the pin where the servos' rail is measured; 0 if it is not.
+        /// The Arduino number of the pin where the servos' rail is measured; 0 if it is not measured.
         pub rail: u8,
-        /// Percent of their own pace to which a low supply limits gaits, 10 to 100.
+        /// The percentage of their own pace to which a low supply limits gaits, 10 to 100.
         pub slow_pace: u8,
         /// The Arduino numbers of the servos' pins; 14 to 19 are A0 to A5.
         pub pins: [u8; 4],
-        /// The heads of the maps of head, tail, left and right. The last of the numbers,
-        /// because the hash is not of them.
+        /// The heads of the maps of head, tail, left and right. They are the last field, because the hash does not
+        /// include them.
         pub maps: [MapHead; 4],
     }
 }
 
-/// The offsets of the numbers and of the first byte after them.
+/// The offset of the numbers; below, that of the first byte after them.
 pub(crate) const NUMBERS: u16 = size_of::<Header>() as u16;
 pub(crate) const REST: u16 = NUMBERS + size_of::<Numbers>() as u16;
 
-/// The number of curves that couplers may have.
+/// The number of curves of each pair of couplers.
 pub const CURVES: usize = 4;
 
 /// A part of the section that is an array.
@@ -134,7 +133,7 @@ pub enum Part {
     Rows,
 }
 
-/// The number of such parts.
+/// The number of parts in [`Part`].
 pub const PARTS: usize = 4;
 
 lizard_avr::plain! {
@@ -177,7 +176,7 @@ pub enum Damage {
 /// The first byte that the CRC covers.
 const CHECKED: usize = offset_of!(Header, name);
 
-/// The length of the section at the beginning of a region, once its CRC is checked.
+/// Checks the section at the beginning of a region and returns its length.
 ///
 /// # Errors
 /// Returns [`Damage::Missing`], [`Damage::Format`] or [`Damage::Damaged`].

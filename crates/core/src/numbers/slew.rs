@@ -1,4 +1,4 @@
-//! The slew limit: the speed of servos when the robot goes from one pose to another.
+//! The slew limit: the largest speed of the servos when the robot moves from one pose to another.
 
 lizard_avr::plain! {
     /// The slew limit of a move.
@@ -12,11 +12,11 @@ lizard_avr::plain! {
 }
 
 impl Slew {
-    /// The lowest limit, 1/65536 turn in a frame: below it, a move would take more frames than
-    /// sixteen bits count.
+    /// The lowest limit, in 1/65536 turn per frame: below it, a move would take more frames than a 16-bit number can
+    /// count.
     pub const SLOWEST: u16 = 36;
 
-    /// A limit in 1/65536 turn a frame.
+    /// A limit in 1/65536 turn per frame.
     ///
     /// # Panics
     /// If the limit is below [`Slew::SLOWEST`].
@@ -24,8 +24,8 @@ impl Slew {
         assert!(per_frame >= Self::SLOWEST);
         Self {
             per_frame,
-            // 3/2 of the mean pace is the peak, and the roundings of a smoothstep add
-            // up to three steps to a frame for each half turn of the way.
+            // The peak of the speed is 3/2 of its mean, and the rounding of a smoothstep adds up to three steps per
+            // frame for each half turn of the distance.
             frames_per_way: (3u32 << 16).div_ceil(2 * (per_frame as u32 - 6)) as u16,
         }
     }

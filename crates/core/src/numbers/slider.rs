@@ -1,22 +1,22 @@
-//! The slider in each side of the body: its lengths, and the stroke that it may use.
+//! The slider on each side of the body: its lengths, and the stroke that it may use.
 
 use lizard_avr::mul_unsigned;
 
 use crate::numbers::units::Scale;
 
-/// The largest length of a side, in steps: chassis, arms and offset together; and the slider.
+/// The largest length on a side, in steps: that of chassis, arms and offset together, and that of the slider.
 pub const MAX_STEPS: f64 = 255.0 * 256.0;
 
-/// The largest sum of both arms and the offset, in steps: the sum is signed.
+/// The largest sum of both arms and the offset, in steps; it has to fit a signed number.
 pub const MAX_ARM_STEPS: f64 = 127.0 * 256.0;
 
 lizard_avr::plain! {
-    /// One side of the body, lengths in steps of `scale`.
+    /// One side of the body, with its lengths in steps of `scale`.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Slider {
         /// The step of all lengths.
         pub scale: Scale,
-        /// The front shaft's x less the rear shaft's.
+        /// The x coordinate of the front shaft minus that of the rear shaft.
         pub offset: i16,
         /// The distance between the two shafts along y.
         pub base: u16,
@@ -52,7 +52,7 @@ impl Slider {
         square(self.min) <= length_sq && length_sq <= square(self.max)
     }
 
-    /// The travel from nominal at a length, in hundredths of a millimetre.
+    /// The difference of a length from nominal, in hundredths of a millimetre.
     #[inline(always)]
     pub fn travel(&self, length: u16) -> i32 {
         self.scale

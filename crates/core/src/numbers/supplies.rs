@@ -1,7 +1,7 @@
-//! The supplies as robot.toml describes them: the reference of the chip and the thresholds.
+//! The supplies as robot.toml describes them: the chip's reference voltage and the thresholds.
 
 lizard_avr::plain! {
-    /// Voltages of one supply below which the robot reacts, mV, falling.
+    /// The falling thresholds of one supply below which the robot reacts, mV.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Thresholds {
         /// The voltage below which gaits slow down and the EEPROM is not written.
@@ -17,12 +17,12 @@ lizard_avr::plain! {
     /// The supplies, as in robot.toml.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Supplies {
-        /// The chip's reference, mV.
+        /// The chip's reference voltage, mV.
         pub reference: u16,
         /// The thresholds of the chip's own supply.
         pub board: Thresholds,
-        /// The reference times the ratio of the divider through which the servos' rail is
-        /// measured, mV; 0 if it is not measured.
+        /// The reference voltage times the ratio of the divider in front of the measured servo rail, mV; 0 if the
+        /// rail is not measured.
         pub rail_reference: u16,
         /// The thresholds of the rail.
         pub rail: Thresholds,

@@ -1,8 +1,7 @@
 //! The units of the core, and every conversion between them.
 //!
-//! An 8-bit processor has no use for floating point, so each quantity gets an integer
-//! whose step is finer than the robot can show. A number that one module gives to another
-//! has its own type; inside a formula it is a plain integer.
+//! Floating point is slow on an 8-bit processor, so each quantity is an integer whose step is finer than the robot
+//! can show. A value that one module passes to another has its own type; inside a formula it is a plain integer.
 //!
 //! | quantity | type | step |
 //! |---|---|---|
@@ -42,7 +41,7 @@ pub const ONE_Q14: i32 = 1 << 14;
 /// One gait cycle, as a phase.
 pub const CYCLE: u32 = 1 << 24;
 
-/// One gait cycle, in the steps by which tables are read.
+/// One gait cycle, in the steps of a table's argument.
 pub const CYCLE16: u32 = 1 << 16;
 
 /// An angle in the chassis frame, 1/65536 turn.
@@ -52,8 +51,7 @@ pub struct Angle(pub u16);
 
 lizard_avr::plain!(Angle: u16);
 
-/// An angle that a servo has turned from its neutral angle, counter-clockwise
-/// positive, 1/65536 turn.
+/// The angle by which a servo has turned from its neutral angle, counter-clockwise positive, 1/65536 turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(transparent)]
 pub struct Sweep(pub i16);
@@ -67,7 +65,7 @@ pub struct Sine(pub i16);
 
 lizard_avr::plain!(Sine: i16);
 
-/// The width of a pulse in CPU cycles of 62.5 ns; 0 is not a pulse.
+/// The width of a pulse in CPU cycles of 62.5 ns; 0 means no pulse.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(transparent)]
 pub struct Width(pub u16);
@@ -81,7 +79,7 @@ impl From<Width> for u16 {
 lizard_avr::plain!(Width: u16);
 
 lizard_avr::plain! {
-    /// The step of a mechanism's lengths: `2^bits` of them are a millimetre.
+    /// The step of a mechanism's lengths: a millimetre has `2^bits` of them.
     ///
     /// Sixteen bits hold the bars of any robot if the step follows its size.
     #[derive(Debug, PartialEq, Eq)]
@@ -92,12 +90,11 @@ lizard_avr::plain! {
 }
 
 impl Angle {
-    /// The angle at `centideg`, at most one turn either way, within 0.004 deg.
+    /// The angle for `centideg`, at most one turn either way, within 0.004 deg.
     #[inline(never)]
     pub fn from_centideg(centideg: i32) -> Self {
         let size = centideg.unsigned_abs() as u16;
-        // A whole turn counts as none. 65536/36000 is 1 + 53769/65536 to within a fifth of a
-        // step over the turn.
+        // A full turn counts as 0. 65536/36000 is 1 + 53769/65536 to within a fifth of a step over the turn.
         let size = if size == TURN_CENTIDEG as u16 {
             0
         } else {
@@ -118,12 +115,12 @@ impl Angle {
         ((mul_unsigned(self.0, TURN_CENTIDEG as u16) + 0x8000) >> 16) as u16
     }
 
-    /// The angle after a sweep from here.
+    /// The angle after a sweep from this one.
     pub const fn swept(self, sweep: Sweep) -> Self {
         Self(self.0.wrapping_add(sweep.0 as u16))
     }
 
-    /// The sweep from here to another angle, the short way round.
+    /// The sweep from this angle to another one, the short way round.
     pub const fn sweep_to(self, other: Self) -> Sweep {
         Sweep(other.0.wrapping_sub(self.0) as i16)
     }
@@ -140,8 +137,8 @@ impl Scale {
     /// The finest step, 1/16384 mm.
     pub const FINEST: Self = Self { bits: 14 };
 
-    /// A length of this step in hundredths of a millimetre, rounded to nearest;
-    /// `length` within 16 bits, whatever its sign.
+    /// Converts a length in this step to hundredths of a millimetre, rounded to nearest. The size of `length`,
+    /// without its sign, must fit 16 bits.
     #[inline(always)]
     pub fn hundredths(self, length: i32) -> i32 {
         let size = mul_unsigned(length.unsigned_abs() as u16, 100) as i32;
@@ -151,7 +148,7 @@ impl Scale {
     }
 }
 
-/// The phase's first sixteen bits, what tables are read by.
+/// The highest sixteen bits of the phase, the argument of the tables.
 pub const fn phase16(phase: u32) -> u16 {
     (phase >> 8) as u16
 }
@@ -165,7 +162,7 @@ pub fn thousandths_from_phase(phase: u32) -> u16 {
 mod tests {
     use super::*;
 
-    /// The distance of two angles, deg, the short way round.
+    /// The distance between two angles, deg, the short way round.
     fn apart(a: f64, b: f64) -> f64 {
         let difference = (a - b).rem_euclid(360.0);
         difference.min(360.0 - difference)
@@ -246,7 +243,7 @@ mod tests {
         for phase in (0..CYCLE).step_by(97).chain([CYCLE - 1]) {
             let exact = f64::from(phase) * 1000.0 / f64::from(CYCLE);
             let printed = thousandths_from_phase(phase);
-            // Tables and the console see the first sixteen bits.
+            // Tables and the console use only the highest sixteen bits.
             let below = exact - f64::from(printed);
             assert!((0.0..1.0 + 1000.0 / 65536.0).contains(&below), "{phase}");
             assert!(printed < 1000);

@@ -1,4 +1,4 @@
-//! The bars of head and tail of a sample, with every table that they need.
+//! The bars of a sample's head and tail, with all tables that they need.
 
 use lizard_avr::Flash;
 use lizard_kinematics as kinematics;
@@ -10,10 +10,10 @@ use crate::numbers::curve::Table;
 use crate::numbers::section;
 use crate::numbers::units::Scale;
 
-/// The bars of one end, with every table that they need.
+/// The bars of one end, with all tables that they need.
 #[derive(Clone, Debug)]
 pub struct Loop {
-    /// Half the sum of base and cranks is the farthest that crank tips part.
+    /// The base and the two cranks. Their sum is the largest distance of the crank tips.
     pub bars: [i16; 3],
     pub scale: Scale,
     pub couplers: Bars,
@@ -58,8 +58,8 @@ impl Bars {
 }
 
 impl Loop {
-    /// Bars in mm, in the finest step that holds them; `None` if a coupler is too short
-    /// compared with the rest.
+    /// Converts bars from mm to the finest step that holds them; `None` if a coupler is too short compared with the
+    /// other bars.
     pub fn new(bars: &kinematics::FiveBar) -> Option<Self> {
         let [base, left, right] = [bars.base, bars.crank_left, bars.crank_right];
         let couplers = [bars.coupler_left, bars.coupler_right];
@@ -79,7 +79,7 @@ impl Loop {
         })
     }
 
-    /// The loop in the form that a section has.
+    /// The loop as the content of a section.
     pub(super) fn content(&self) -> section::Loop {
         let [base, left, right] = self.bars;
         section::Loop {

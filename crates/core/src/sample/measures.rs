@@ -1,4 +1,4 @@
-//! Robots in millimetres and degrees, as a builder measures them.
+//! Robots in millimetres and degrees, as builders measure them.
 
 use lizard_kinematics as kinematics;
 use lizard_kinematics::{Leg, Links, Lizard};
@@ -8,7 +8,7 @@ use super::STEPS_PER_DEGREE;
 use crate::numbers::calibration::Calibration;
 use crate::numbers::units::{Sweep, Width};
 
-/// One servo as robot.toml has it.
+/// One servo, with the values of robot.toml.
 #[derive(Clone, Copy, Debug)]
 pub struct Servo {
     /// Chassis angle at the neutral width, deg.
@@ -26,7 +26,7 @@ pub struct Measures {
     pub lizard: Lizard,
     pub limits: kinematics::Limits,
     pub servos: [Servo; 4],
-    /// Fastest point-to-point move, deg/s.
+    /// The slew limit of point-to-point moves, deg/s.
     pub slew: f64,
 }
 
@@ -157,8 +157,8 @@ impl Servo {
     }
 }
 
-/// The links of two ends (base, left crank, couplers, right crank) and two sides
-/// (chassis, rear arm, rear and front half of the slider, front arm).
+/// A robot made from the links of two ends (base, left crank, couplers, right crank) and of two sides (chassis, rear
+/// arm, rear and front half of the slider, front arm).
 fn lizard(head: [f64; 5], tail: [f64; 5], left: [f64; 5], right: [f64; 5]) -> Lizard {
     let mut links = [0.0; 20];
     for (index, part) in [head, tail, left, right].iter().enumerate() {

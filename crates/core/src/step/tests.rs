@@ -8,19 +8,19 @@ use crate::motion::Motion;
 use crate::sample::Sample;
 use crate::virtual_board::{Running, Transmitter, VirtualBoard};
 
-/// A robot whose program begins at this tick, with these bytes already received.
+/// A robot whose program starts at this tick, with these bytes already received.
 fn begun(ticks: u8, received: &str) -> Running {
     let mut board = VirtualBoard::default().at_tick(ticks);
     board.send(received.as_bytes());
     Running::on(Sample::odd().section(), board)
 }
 
-/// True if main does something in a step.
+/// True if the main loop did something in this step.
 fn works(running: &mut Running) -> bool {
     running.main.step(&mut running.board) == Step::Worked
 }
 
-/// A robot that stands, with a line of wrong bytes received: somebody sends at another rate.
+/// A robot that stands and has received a line of garbled bytes, as from a sender at another rate.
 fn hearing_another_rate() -> Running {
     let mut running = Running::power_on(*Sample::odd());
     running.run(10);
@@ -95,7 +95,7 @@ fn only_the_end_of_the_pulses_replaces_a_frame_that_waits_to_be_played() {
     for rests in [false, true] {
         let mut running = begun(0, "");
         running.run(100);
-        // Main is late for a tick: its frame waits until after the next one.
+        // The main loop is late for a tick, so its frame waits until after the next tick.
         running.board.pass_time(1 + 5);
         running.settle();
         let late = running.board.submitted();
@@ -133,7 +133,7 @@ fn the_pulses_handed_over_are_those_of_the_motion_and_counters_reach_status() {
     assert!(status.contains(" frames=30 late=0 rx_lost=34 "), "{status}");
 }
 
-/// The numbers of the frames at which the LED changes.
+/// The numbers of frames between the changes of the LED.
 fn beats(leds: &[bool]) -> Vec<usize> {
     let changes: Vec<usize> = (1..leds.len())
         .filter(|n| leds[*n] != leds[n - 1])
@@ -155,7 +155,7 @@ fn the_led_beats_slowly_and_flashes_while_the_guard_holds_the_robot() {
     assert_eq!(running.motion().activity(), Activity::Stop);
     assert!(held_since > 40);
     let (slow, fast) = leds.split_at(held_since - 1);
-    // Lit from power-on for the first 31 frames; then 32 dark, and so on.
+    // Lit for the first 31 frames from power-on, then dark for 32, and so on.
     assert!(slow[..31].iter().all(|led| *led) && !slow[31]);
     assert!(beats(slow).iter().all(|frames| *frames == 32));
     let fast = beats(fast);

@@ -1,23 +1,23 @@
-//! The analogue converter, and the time that its measurements take.
+//! The analogue-to-digital converter, and the time that its measurements take.
 
 use crate::control::supply::Reading;
 use crate::numbers::supplies::Supplies;
 
-/// The converter; it measures one voltage in every second frame.
+/// The analogue-to-digital converter; it measures one voltage in every second frame.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Converter {
-    /// The present supplies.
+    /// The actual supplies.
     truth: Reading,
     /// True if the servos' rail is measured too.
     has_rail: bool,
     read: Reading,
-    /// Frames since power-on, up to a complete measurement; then the part that is under way.
+    /// The number of the frame within a round of measurements.
     frames: u8,
     is_complete: bool,
 }
 
 impl Converter {
-    /// A converter with these supplies, with the servos' rail or without.
+    /// A converter with these actual supplies, with or without the servos' rail.
     pub fn new(truth: Reading, has_rail: bool) -> Self {
         Self {
             truth,
@@ -26,12 +26,12 @@ impl Converter {
         }
     }
 
-    /// Changes the supplies.
+    /// Changes the actual supplies.
     pub const fn set(&mut self, truth: Reading) {
         self.truth = truth;
     }
 
-    /// The present supplies.
+    /// The actual supplies.
     pub const fn truth(&self) -> Reading {
         self.truth
     }
@@ -45,7 +45,7 @@ impl Converter {
         Self::new(self.truth, self.has_rail)
     }
 
-    /// The last complete reading, or nothing; begins the next measurement.
+    /// Returns the last complete reading, or the default if there is none, and starts the next measurement.
     pub(super) fn next(&mut self) -> Reading {
         match self.frames {
             1 => {
@@ -68,7 +68,7 @@ impl Converter {
     }
 }
 
-/// The converter's reading of a supply, and of a rail through its divider, mV.
+/// The converter's reading of a supply `board`, and of a `rail` through its divider, both in mV.
 pub fn reading(supplies: &Supplies, board: u32, rail: u32) -> Reading {
     let board = u64::from(board);
     let parts = |mv: u64| ((1024 * mv + board / 2) / board.max(1)).min(1023) as u16;

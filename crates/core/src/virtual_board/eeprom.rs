@@ -1,4 +1,4 @@
-//! The EEPROM: 1024 bytes that take their time, wear out, and may lose power.
+//! The EEPROM: 1024 bytes that are slow to write, wear out, and may lose power during a write.
 
 use core::cell::Cell;
 use core::hash::{Hash, Hasher};
@@ -11,17 +11,16 @@ use crate::memory::record::{ERASED, Memory, SIZE};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Eeprom {
     bytes: Arc<[u8; SIZE]>,
-    /// The number of polls after a write until it is ready again; or, if it is `is_timed`,
-    /// milliseconds.
+    /// The time until the EEPROM is ready again after a write: in milliseconds if `is_timed`, else in polls.
     pub slowness: u16,
-    /// True if time makes the EEPROM ready, as on the chip, and not polls.
+    /// True if the passing of time makes the EEPROM ready, as on the chip; false if polls do.
     pub is_timed: bool,
     /// True if the EEPROM is worn out, so that writes change nothing.
     pub is_worn: bool,
     /// Every write of a byte: address, old value, new value.
     pub log: Vec<(u16, u8, u8)>,
     busy: Cell<u16>,
-    /// True if the EEPROM was polled while it was not ready.
+    /// True if the last poll found the EEPROM busy; only set if `is_timed`.
     was_polled_busy: Cell<bool>,
     /// The byte that is being written.
     under_way: Cell<Option<u16>>,
@@ -63,12 +62,12 @@ impl Eeprom {
         }
     }
 
-    /// All its bytes.
+    /// All bytes of the EEPROM.
     pub fn bytes(&self) -> &[u8; SIZE] {
         &self.bytes
     }
 
-    /// All its bytes, to be changed by a test.
+    /// All bytes of the EEPROM, mutable for tests.
     pub fn bytes_mut(&mut self) -> &mut [u8; SIZE] {
         Arc::make_mut(&mut self.bytes)
     }
@@ -78,7 +77,7 @@ impl Eeprom {
         self.under_way.get()
     }
 
-    /// True if it was polled while busy since the last call and only time makes it ready.
+    /// True if the last poll found the EEPROM busy and only time makes it ready. Clears the flag.
     pub fn was_polled_busy(&self) -> bool {
         self.was_polled_busy.take()
     }
@@ -92,13 +91,13 @@ impl Eeprom {
         }
     }
 
-    /// Lets enough time pass for the byte that is being written.
+    /// Lets the byte that is being written finish.
     pub(super) fn settle(&mut self) {
         self.busy.set(0);
         self.under_way.set(None);
     }
 
-    /// Cuts the power: the byte that was being written gets this value.
+    /// Cuts the power: a byte that is being written gets this value.
     pub(super) fn cut_power(&mut self, byte: u8) {
         if let Some(address) = self.under_way.take() {
             self.bytes_mut()[usize::from(address)] = byte;

@@ -1,4 +1,4 @@
-//! The bytes of RAM that a reset leaves alone.
+//! The RAM bytes that survive a reset.
 
 use core::cell::Cell;
 use core::hash::{Hash, Hasher};
@@ -7,7 +7,7 @@ use crate::memory::kept::{self, CELLS, Cells};
 use crate::memory::restart::{Cause, Restart, Stance};
 use crate::numbers::rate::Rate;
 
-/// The cells of [`crate::memory::kept`].
+/// The cells of [`crate::memory::kept`], in memory of the host.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Ram(Cell<[u8; CELLS]>);
 

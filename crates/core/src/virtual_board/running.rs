@@ -1,4 +1,4 @@
-//! A robot that runs on a virtual board, with a user at the other end of its line.
+//! A robot that runs on a virtual board, with a user at the other end of its serial line.
 
 use std::string::{String, ToString};
 use std::vec::Vec;
@@ -13,10 +13,10 @@ use crate::numbers::pose::Pulses;
 use crate::numbers::robot::Robot;
 use crate::step::{Main, Step};
 
-/// The firmware's main and its board.
+/// The firmware's main loop and its board.
 #[derive(Clone, Debug)]
 pub struct Running {
-    /// The firmware's main.
+    /// The firmware's main loop.
     pub main: Main,
     /// The board that it runs on.
     pub board: VirtualBoard,
@@ -30,10 +30,10 @@ impl Running {
         Self::with(robot, Eeprom::blank(), Restart::default())
     }
 
-    /// A robot with this memory, after this reset.
+    /// A robot with this memory, after a restart with this cause and state.
     pub fn with(robot: Robot<'static>, memory: Eeprom, restart: Restart) -> Self {
         let supplies = robot.supplies();
-        // A rail well above what it needs.
+        // A rail voltage well above its thresholds.
         let rail = u32::from(supplies.rail.slow) + 1_000;
         let truth = reading(&supplies, 5_000, rail.max(6_000));
         let board = VirtualBoard {
@@ -43,7 +43,7 @@ impl Running {
         Self::on(robot.section(), board)
     }
 
-    /// The firmware on this board, with this flash in place of the robot's section.
+    /// The firmware on this board, with `flash` in place of the robot's section.
     pub fn on(flash: Region<'static>, mut board: VirtualBoard) -> Self {
         let mut main = Main::new();
         main.begin(flash, &mut board);
@@ -55,20 +55,20 @@ impl Running {
         self.main.control().motion()
     }
 
-    /// True while there is something to write.
+    /// True while there is output to write.
     pub const fn has_output(&self) -> bool {
         self.main.console().has_output(self.main.control())
     }
 
-    /// True once the watchdog has ended the pulses: main stops, and waits for its restart.
+    /// True once the watchdog has ended the pulses: the main loop has stopped and waits for the restart.
     pub const fn is_over(&self) -> bool {
         self.board.is_hushed()
     }
 
-    /// Steps until main has nothing to do before time passes.
+    /// Steps the main loop until it has nothing to do before time passes.
     ///
     /// # Panics
-    /// If main never becomes idle.
+    /// If the main loop never becomes idle.
     pub fn settle(&mut self) {
         if self.is_over() {
             return;
@@ -82,13 +82,12 @@ impl Running {
         panic!("it never rests");
     }
 
-    /// Runs a frame: main computes it for the next tick, and its pulses begin. Returns the
-    /// pulses.
+    /// Runs a frame: the main loop computes it for the next tick, and its pulses begin. Returns the pulses.
     pub fn frame(&mut self) -> Pulses {
         self.settle();
         self.board.pass_time(self.board.until_tick());
         self.settle();
-        // Main also runs between the pulses.
+        // The main loop also runs between the pulses.
         for ms in [4, 4, 4, 4, 3] {
             self.board.pass_time(ms);
             self.settle();
@@ -96,7 +95,7 @@ impl Running {
         self.board.started_pulses()
     }
 
-    /// Runs frames, and returns the output in them.
+    /// Runs frames and returns their output.
     pub fn run(&mut self, frames: u32) -> Vec<String> {
         let mut printed = Vec::new();
         for _ in 0..frames {
@@ -115,7 +114,7 @@ impl Running {
         self.board.transmitter.is_held = false;
     }
 
-    /// Reads every line that waits, and checks its form.
+    /// Reads all waiting lines and checks their form.
     ///
     /// # Panics
     /// If a line has a wrong form.
@@ -134,7 +133,7 @@ impl Running {
         lines
     }
 
-    /// Sends bytes, each after the output before it, and returns all output.
+    /// Sends bytes one by one, reading the output before each, and returns all output.
     pub fn send(&mut self, bytes: &[u8]) -> Vec<String> {
         let mut lines = self.lines();
         for byte in bytes {
@@ -144,7 +143,7 @@ impl Running {
         lines
     }
 
-    /// Sends a line and returns the final line of its answer. Lines after that can still be read.
+    /// Sends a line and returns the final line of its answer. Later lines remain to be read.
     ///
     /// # Panics
     /// If the answer does not end with exactly one final line.
@@ -167,7 +166,7 @@ impl Running {
     /// Sends a line, which must be accepted.
     ///
     /// # Panics
-    /// If the answer is not `ok` and the line.
+    /// If the answer is not `ok` followed by the line.
     #[track_caller]
     pub fn accept(&mut self, line: &str) {
         assert_eq!(self.say(line), std::format!("ok {line}"));
@@ -176,7 +175,7 @@ impl Running {
     /// Sends a line, which must be refused with an answer that begins with `err` and `reason`.
     ///
     /// # Panics
-    /// If it is not.
+    /// If the line is accepted, or refused for another reason.
     #[track_caller]
     pub fn refuse(&mut self, line: &str, reason: &str) {
         let answer = self.say(line);
@@ -199,8 +198,8 @@ impl Running {
 }
 
 impl Running {
-    /// Lets time pass in which main hangs. Once the watchdog has ended the pulses, main stays
-    /// stopped until the reset. Returns true if that comes.
+    /// Lets time pass in which the main loop hangs. Once the watchdog has ended the pulses, the loop stays stopped
+    /// until the reset. Returns true if the reset comes.
     pub fn stall(&mut self, ms: u16) -> bool {
         let mut bites = self.board.pass_time(ms);
         while self.is_over() && !bites {
@@ -230,7 +229,7 @@ impl Running {
     }
 }
 
-/// True for the one line that ends an answer.
+/// True for a line that ends an answer.
 pub fn is_final(line: &str) -> bool {
     let code = line
         .strip_prefix("err ")

@@ -1,4 +1,4 @@
-//! The virtual board behaves like the UNO.
+//! Tests that the virtual board behaves like the UNO.
 
 use super::*;
 use std::format;
@@ -148,8 +148,8 @@ fn bytes_beyond_what_the_receiver_holds_are_lost_and_counted() {
 
 #[test]
 fn the_first_pulse_after_a_reset_is_at_most_the_frame_on_its_way_then() {
-    // A setting that comes before the servos wake turns them at the slew limit from
-    // where they were, not from a frame farther.
+    // Settings that change before the servos wake must not move them beyond the last submitted frame: the first
+    // pulses repeat it, and the slew limit counts from there.
     let mut running = Running::power_on(*Sample::odd());
     running.run(200);
     running.say("sway");
@@ -175,7 +175,7 @@ fn the_first_pulse_after_a_reset_is_at_most_the_frame_on_its_way_then() {
     assert_eq!(first, on_its_way.0.map(Some));
 }
 
-/// The largest change of each servo's pulse from one frame to the next, cycles.
+/// The largest change of each servo's pulse width from one frame to the next, cycles.
 fn leaps(running: &mut Running, frames: usize) -> [u16; 4] {
     let mut last = *running.motion().sent();
     let mut leaps = [0; 4];

@@ -1,4 +1,4 @@
-//! The transmitter: the robot's output, and a line that takes its time.
+//! The transmitter: the robot's output, over a serial line that needs time for each byte.
 
 use core::convert::Infallible;
 use core::hash::{Hash, Hasher};
@@ -6,23 +6,23 @@ use std::string::String;
 
 use ufmt::uWrite;
 
-/// CPU cycles of a millisecond.
+/// CPU cycles in a millisecond.
 const MS: u64 = 16_000;
 
 /// The transmitter of the serial line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Transmitter {
-    /// The text that was written and not read yet.
+    /// The text that was written and is not read yet.
     pub text: String,
-    /// True while nobody reads the line, so that it never gets free.
+    /// True while nobody reads the line, so that nothing more is sent.
     pub is_held: bool,
-    /// CPU cycles for a byte; 0 for a line without delay.
+    /// CPU cycles per byte; 0 for a line without delay.
     per_byte: u64,
-    /// Bytes that it accepts before a writer has to wait.
+    /// The number of bytes that it accepts before a writer has to wait.
     capacity: u64,
-    /// The present cycle.
+    /// The current cycle.
     now: u64,
-    /// The cycle at which everything written has been sent.
+    /// The cycle at which the last written byte is sent.
     free: u64,
 }
 
@@ -42,7 +42,7 @@ impl Hash for Transmitter {
 }
 
 impl Transmitter {
-    /// A line that takes this many cycles for a byte, with room for this many bytes.
+    /// A line that takes `per_byte` cycles for a byte, with room for `capacity` bytes.
     pub const fn new(per_byte: u64, capacity: u64) -> Self {
         Self {
             text: String::new(),
@@ -59,22 +59,22 @@ impl Transmitter {
         self.now += ms * MS;
     }
 
-    /// Sets the present cycle.
+    /// Sets the current cycle.
     pub const fn at(&mut self, cycle: u64) {
         self.now = cycle;
     }
 
-    /// The cycle at which everything written has been sent.
+    /// The cycle at which the last written byte is sent.
     pub const fn free(&self) -> u64 {
         self.free
     }
 
-    /// Adds bytes from an earlier run that are still to be sent.
+    /// Adds bytes that are still to be sent, as if left from an earlier run.
     pub const fn fill(&mut self, bytes: u64) {
         self.free = self.now + bytes * self.per_byte;
     }
 
-    /// Bytes that it takes without waiting, at most 255.
+    /// The number of bytes that it takes without waiting, at most 255.
     pub fn room(&self) -> u8 {
         if self.is_held {
             return 0;

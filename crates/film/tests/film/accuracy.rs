@@ -1,4 +1,4 @@
-//! How well films of a robot whose path is known are measured.
+//! The accuracy of measurements in films of a robot whose path is known.
 
 use fastrand::Rng;
 use lizard_film::{Film, Gait, Mean, Measured, Sight, read};
@@ -7,7 +7,7 @@ use crate::render::{Studio, normal};
 use crate::studio::{TRUE_SIZE, film, small};
 use crate::walk::{Varies, Walk, gait, truth};
 
-/// Films some cycles with a random camera, and measures them.
+/// Films some cycles with a random camera and measures them.
 fn measured(
     gait: &Gait,
     cycles: usize,
@@ -16,7 +16,7 @@ fn measured(
     rng: &mut Rng,
 ) -> (Measured, Sight) {
     let mut studio = Studio::random(rng);
-    // What a user measures with a ruler.
+    // The errors of the user's ruler.
     studio.deck += varies.ruler * normal(rng);
     studio.print = [1.0 + varies.ruler / 1000.0 * normal(rng); 2];
     let way = truth(gait).forward * cycles as f64;
@@ -25,14 +25,14 @@ fn measured(
     watched_gait(&film(&studio, &walk, rate, rng), gait)
 }
 
-/// A gait in a film, and the camera.
+/// Measures a gait in a film; returns the result and the camera.
 fn watched_gait(film: &Film, gait: &Gait) -> (Measured, Sight) {
     let watched = film.watch(TRUE_SIZE).expect("it is watched");
     let measured = watched.measure(gait, None).expect("it is measured");
     (measured, watched.sight)
 }
 
-/// The parts of a measured movement with their true values.
+/// The parts of a measured movement, with their true values.
 fn parts(measured: &Measured, gait: &Gait) -> [(Mean, f64); 3] {
     let truth = truth(gait);
     [
@@ -62,7 +62,7 @@ fn a_cycle_is_measured_to_a_fifth_of_a_millimetre_and_half_a_degree() {
     }
 }
 
-/// Reads a number from the environment.
+/// Reads a number from an environment variable; `or` if there is none.
 pub fn number(name: &str, or: usize) -> usize {
     let number = std::env::var(name).ok().and_then(|word| word.parse().ok());
     number.unwrap_or(or)
@@ -75,7 +75,7 @@ fn spread(values: &[f64]) -> [f64; 2] {
     [mean, (squares.sum::<f64>() / values.len() as f64).sqrt()]
 }
 
-/// Measures films of the gaits in turn, on all cores; each film has random numbers of its own.
+/// Measures films of the gaits in turn, on all cores; each film has its own random numbers.
 fn each_film(
     films: usize,
     gaits: &[Gait],
@@ -102,8 +102,8 @@ fn each_film(
 /// The names of a movement's parts.
 const NAMES: [&str; 3] = ["ahead, mm", "left, mm", "turn, deg"];
 
-/// `make measure-test`. The robot varies by more than a tag's place is uncertain, as built ones do, and the
-/// user's ruler is off, too.
+/// Run by `make measure-test`. The robot varies by more than the error of a tag's place, as real robots do, and the
+/// user's ruler has an error, too.
 #[test]
 #[ignore = "takes minutes; make measure-test"]
 fn in_short_films_the_truth_lies_within_two_errors_in_93_to_97_percent() {
@@ -140,7 +140,7 @@ fn in_short_films_the_truth_lies_within_two_errors_in_93_to_97_percent() {
     assert!((0.93..=0.97).contains(&share), "{share}");
 }
 
-/// `make measure-test`. A robot whose cycles are all alike: what is left is the camera's.
+/// Run by `make measure-test`. All cycles of the robot are identical, so the errors are those of the camera.
 #[test]
 #[ignore = "takes minutes; make measure-test"]
 fn ten_cycles_at_720p_on_a_tripod_have_no_bias_and_little_spread() {
@@ -167,7 +167,8 @@ fn ten_cycles_at_720p_on_a_tripod_have_no_bias_and_little_spread() {
     }
 }
 
-/// `make measure-test`. Every picture from another place: 3 mm and 0.3 deg to and fro.
+/// Run by `make measure-test`. Each picture is taken from another place, with standard deviations of 3 mm and 0.3
+/// deg.
 #[test]
 #[ignore = "takes minutes; make measure-test"]
 fn a_camera_in_the_hand_measures_a_cycle_to_a_fifth_of_a_millimetre() {
@@ -214,7 +215,7 @@ fn tags_near_their_last_places_are_found_as_in_the_whole_picture_and_so_is_one_t
     let mut film = Film::default();
     for i in 0..12 {
         let way = f64::from(i) * 4.0;
-        // Halfway a hand puts the robot back, and turns it. The camera is in another hand.
+        // In the middle of the film, someone puts the robot elsewhere and turns it. The camera is in a hand, too.
         let robot = if i < 6 {
             [way, 0.0, 0.0]
         } else {

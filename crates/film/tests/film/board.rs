@@ -1,4 +1,4 @@
-//! A board that is lifted until the robot on it slides, by static friction and friction while it slides.
+//! A board that is lifted until the robot on it slides, with static and sliding friction.
 
 use std::f64::consts::PI;
 
@@ -7,26 +7,26 @@ use lizard_film::Picture;
 
 use super::render::Studio;
 
-/// Acceleration of free fall, mm/s^2, and step of the simulation, s.
+/// Acceleration of free fall, mm/s^2; below, the step of the simulation, s.
 const GRAVITY: f64 = 9806.65;
 const STEP: f64 = 0.0005;
-/// Place at which a hand stops the robot, mm down from where it stood.
+/// Place at which a hand stops the robot, mm downhill from where it stood.
 const STOPPED: f64 = 110.0;
 
-/// A board that is lifted, and the robot on it.
+/// A board that is lifted, with a robot on it.
 #[derive(Clone, Copy)]
 pub struct Board {
     pub resting: f64,
     pub sliding: f64,
-    /// deg/s, from a time on, s.
+    /// Rate of the lift, deg/s; below, the time at which it begins, s.
     pub lift: f64,
     pub from: f64,
     /// Tilt at the beginning and at the end, deg.
     pub begin: f64,
     pub end: f64,
-    /// Direction of the head from the way down, deg.
+    /// Direction of the head, relative to downhill, deg.
     pub head: f64,
-    /// Direction of the slide from the way down, deg.
+    /// Direction of the slide, relative to downhill, deg.
     pub aside: f64,
 }
 
@@ -47,7 +47,7 @@ impl Board {
         (self.begin + self.lift * (seconds - self.from).max(0.0)).min(self.end)
     }
 
-    /// The robot's way down, mm, each [`STEP`] seconds for a time in seconds.
+    /// The robot's distance downhill, mm, at every [`STEP`] up to a time in seconds.
     fn ways(&self, seconds: f64) -> Vec<f64> {
         let (mut way, mut speed) = (0.0, 0.0);
         let step = |i: usize| {
@@ -64,7 +64,7 @@ impl Board {
         (0..(seconds / STEP) as usize).map(step).collect()
     }
 
-    /// Takes pictures of the board, many in a second only around the slide, and hands them on with their times.
+    /// Takes pictures of the board, at the full rate only around the slide, and passes them on with their times.
     pub fn pictures(&self, studio: &Studio, rate: f64, mut take: impl FnMut(f64, &Picture)) {
         let mut rng = Rng::with_seed(11);
         let length = self.from + (self.end.min(45.0) - self.begin) / self.lift + 0.5;
@@ -74,7 +74,7 @@ impl Board {
         while seconds < length && way(seconds - 0.1) < STOPPED {
             let mut here = studio.clone();
             here.board = self.tilt(seconds);
-            // The way down is to the left in the scene.
+            // Downhill is to the left in the scene.
             let heading = PI + self.head.to_radians();
             let (sin, cos) = (PI + self.aside.to_radians()).sin_cos();
             let robot = |time: f64| [55.0 + way(time) * cos, 5.0 + way(time) * sin, heading];
@@ -89,13 +89,13 @@ impl Board {
     }
 }
 
-/// A studio with few pixels, which the sheet fills.
+/// A studio with few pixels, whose picture the sheet fills.
 pub fn studio() -> Studio {
     let mut studio = Studio::random(&mut Rng::with_seed(5));
     (studio.size, studio.focal) = ([640, 480], 0.85);
     (studio.height, studio.tilt, studio.direction) = (850.0, 12.0, 90.0);
     (studio.roll, studio.aim) = (0.0, [0.0; 2]);
-    // A robot that lies askew needs more room.
+    // A robot that stands askew needs more room.
     studio.strips = [[5.0, -180.0, 0.03], [-5.0, 180.0, PI - 0.02]];
     studio.shutter = 1.0 / 250.0;
     studio

@@ -1,4 +1,4 @@
-//! One walk through many cameras: each differs from a good one in a single way.
+//! One walk filmed by many cameras: each differs from a good one in a single property.
 
 use fastrand::Rng;
 use lizard_film::Film;
@@ -8,22 +8,22 @@ use crate::render::{Studio, normal};
 use crate::studio::{TRUE_SIZE, film_of};
 use crate::walk::{Varies, Walk, gait, truth};
 
-/// Cycles of a film.
+/// Cycles in a film.
 const CYCLES: usize = 6;
-/// Largest error of a mean cycle and largest spread of single ones: mm, mm, deg.
+/// Largest error of a mean cycle, and largest spread of single cycles: mm, mm, deg.
 const LARGEST: [f64; 3] = [0.2, 0.2, 0.5];
 
 /// A camera that a user may have.
 struct Camera {
     name: &'static str,
     studio: Studio,
-    /// Pictures in a second.
+    /// Pictures per second.
     rate: f64,
-    /// Standard deviation of the hand's position, mm; its angles vary by a tenth of it, in deg.
+    /// Standard deviation of the hand's position, mm; that of its angles is a tenth of it, deg.
     shake: f64,
 }
 
-/// A good camera: 720p, 30 pictures in a second, on a tripod.
+/// A good camera: 720p, 30 pictures per second, on a tripod.
 fn good() -> Studio {
     let mut studio = Studio::random(&mut Rng::with_seed(5));
     (studio.focal, studio.height, studio.tilt) = (0.78, 780.0, 20.0);
@@ -31,7 +31,7 @@ fn good() -> Studio {
     studio
 }
 
-/// The cameras.
+/// All cameras of the test.
 fn cameras() -> Vec<Camera> {
     let camera = |name, change: &dyn Fn(&mut Studio), rate, shake| {
         let mut studio = good();
@@ -107,7 +107,7 @@ fn film(camera: &Camera, walk: &Walk, rng: &mut Rng) -> Film {
     film
 }
 
-/// `make measure-test`.
+/// Run by `make measure-test`.
 #[test]
 #[ignore = "takes minutes; make measure-test"]
 fn every_camera_measures_a_cycle_to_a_fifth_of_a_millimetre_and_half_a_degree() {

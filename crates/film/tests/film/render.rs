@@ -1,7 +1,7 @@
-//! A renderer: what a camera sees of the sheet and the robot, with all that spoils a picture.
+//! A renderer: makes the picture of the sheet and the robot that a camera would take, with everything that degrades a
+//! real one.
 //!
-//! It shares only the design of the sheet with what it tests: its camera looks along rays and
-//! not through matrices.
+//! It shares only the design of the sheet with the tested code: its camera follows rays and uses no matrices.
 
 use std::f64::consts::PI;
 
@@ -14,28 +14,28 @@ type Vector = [f64; 3];
 
 const BLACK: f64 = 35.0;
 const PAPER: f64 = 205.0;
-/// Half width and half length of the robot, mm, and its grey and height.
+/// Half width and half length of the robot, mm; below, its grey and its height.
 const BODY: [f64; 2] = [75.0, 105.0];
 const BODY_GREY: f64 = 70.0;
 const BODY_HEIGHT: f64 = 55.0;
-/// Edge about which a board is tilted, mm: its other end is lifted.
+/// Edge about which a board is tilted, mm; its other end is lifted.
 const EDGE: f64 = -200.0;
-/// Samples of a pixel to each side, and of the time that the shutter is open.
+/// Samples of a pixel in each direction; below, samples of the time that the shutter is open.
 const SAMPLES: usize = 3;
 const TIMES: usize = 3;
-/// Number of random numbers from which noise is taken, and of pixels that take them in a row.
+/// Number of random numbers for the noise; below, the number of successive pixels that use them in sequence.
 const NOISES: usize = 1 << 16;
 const IN_A_ROW: usize = 64;
 
-/// The floor, the sheet and the camera.
+/// The scene: the floor, the sheet and the camera.
 #[derive(Clone)]
 pub struct Studio {
     pub size: [usize; 2],
-    /// Focal length over the picture's width.
+    /// Focal length as a share of the picture's width.
     pub focal: f64,
-    /// Bend of the lens: the share by which it moves a point that is as far from the axis as the focal length.
+    /// Distortion of the lens: the share by which it moves a point that is as far from the axis as the focal length.
     pub lens: f64,
-    /// Height of the camera above the middle of the scene, tilt, its direction and roll: mm, deg.
+    /// Height of the camera above the middle of the scene, mm; below, its tilt, direction and roll, deg.
     pub height: f64,
     pub tilt: f64,
     pub direction: f64,
@@ -46,30 +46,30 @@ pub struct Studio {
     pub board: f64,
     /// Places of the strips' middles.
     pub strips: [Spot; 2],
-    /// Printed mm for each mm, along and across.
+    /// Printed mm per mm, along and across.
     pub print: [f64; 2],
-    /// Scale of the distance of a strip's tags alone.
+    /// Scale of the distance between a strip's tags alone.
     pub cut: f64,
-    /// Height of the deck's tag, mm.
+    /// Height of the deck tag, mm.
     pub deck: f64,
     /// Ids of tags that are covered.
     pub hidden: Vec<usize>,
-    /// Round things that lie on the floor or shine on it: x, y, radius, mm, and their grey.
+    /// Round objects or reflections on the floor: x, y, radius, mm, and their grey.
     pub discs: Vec<[f64; 4]>,
-    /// Exposure time, and the time from the first row to the last one, s.
+    /// Exposure time, s; below, the time from the first row to the last one, s.
     pub shutter: f64,
     pub readout: f64,
-    /// Light, as a share of the usual one.
+    /// Light, as a share of normal light.
     pub light: f64,
     /// Standard deviation of the noise, grey levels.
     pub noise: f64,
-    /// Grey of the floor, and the loss of light from one corner to the other.
+    /// Grey of the floor; below, the loss of light from one corner of the picture to the opposite one.
     pub floor: f64,
     pub shade: f64,
 }
 
 impl Studio {
-    /// A studio with a random camera on a tripod that sees all of the strips.
+    /// A studio with a random camera on a tripod that sees both strips entirely.
     pub fn random(rng: &mut Rng) -> Self {
         loop {
             let studio = Self::any(rng);
@@ -97,7 +97,7 @@ impl Studio {
         })
     }
 
-    /// A studio with a random camera, wherever it looks.
+    /// A studio with a random camera, whether or not it sees the strips.
     fn any(rng: &mut Rng) -> Self {
         let mut between = |low: f64, high: f64| low + (high - low) * rng.f64();
         Self {
@@ -136,7 +136,7 @@ impl Studio {
         }
     }
 
-    /// The camera's place, and its axes: right, down, ahead.
+    /// The camera's position, and its axes: right, down, ahead.
     fn camera(&self) -> (Vector, [Vector; 3]) {
         let (tilt, direction) = (self.tilt.to_radians(), self.direction.to_radians());
         let lean = [tilt.sin() * direction.cos(), tilt.sin() * direction.sin()];
@@ -152,13 +152,13 @@ impl Studio {
         let down = cross(ahead, level);
         let (sin, cos) = self.roll.to_radians().sin_cos();
         let right = [0, 1, 2].map(|i| cos * level[i] + sin * down[i]);
-        // The camera as the board sees it.
+        // The camera in the frame of the board.
         let [x, y, z] = self.on_board([eye[0] - EDGE, eye[1], eye[2]]);
         let axes = [right, cross(ahead, right), ahead].map(|axis| self.on_board(axis));
         ([x + EDGE, y, z], axes)
     }
 
-    /// A direction of the room as the tilted board sees it.
+    /// Converts a direction from the frame of the room to that of the tilted board.
     fn on_board(&self, [x, y, z]: Vector) -> Vector {
         let (sin, cos) = self.board.to_radians().sin_cos();
         [x * cos + z * sin, y, z * cos - x * sin]
@@ -230,7 +230,7 @@ impl Studio {
         self.floor
     }
 
-    /// The grey of a point of the robot's card, from the middle of its tag: right, ahead.
+    /// The grey of a point of the robot's card, given to the right and ahead of the middle of its tag.
     fn card_at(&self, [x, y]: [f64; 2]) -> Option<f64> {
         let [x, y] = [x / self.print[0], y / self.print[1]];
         let low = -sheet::DECK_EDGE / 2.0 - sheet::CARD_MARGIN;
@@ -245,12 +245,12 @@ impl Studio {
     }
 }
 
-/// A studio's picture without the robot.
+/// The picture of a studio without the robot.
 pub struct Background {
     studio: Studio,
     view: View,
     light: Vec<f32>,
-    /// Random numbers, taken from another place for every few pixels.
+    /// Random numbers for the noise; each row of some pixels begins at another index.
     noise: Vec<f32>,
 }
 
@@ -263,13 +263,13 @@ struct View {
 }
 
 impl View {
-    /// The point at a height that a pixel shows.
+    /// The point at a height that a pixel shows: its ray, followed to that height.
     fn meet(&self, [x, y]: [f64; 2], height: f64) -> [f64; 2] {
         let bent = [
             (x - self.middle[0]) / self.focal,
             (y - self.middle[1]) / self.focal,
         ];
-        // The opposite of the lens, by its own steps: it bends little.
+        // Inverts the distortion of the lens by iteration, which converges fast since the distortion is small.
         let [mut u, mut v] = bent;
         for _ in 0..3 {
             let factor = self.bend(u, v);
@@ -281,7 +281,7 @@ impl View {
         [self.eye[0] + far * ray[0], self.eye[1] + far * ray[1]]
     }
 
-    /// The pixel that shows a point.
+    /// The pixel that shows a point at a height.
     fn image(&self, [x, y]: [f64; 2], height: f64) -> [f64; 2] {
         let from = [x - self.eye[0], y - self.eye[1], height - self.eye[2]];
         let along = |axis: &Vector| (0..3).map(|i| axis[i] * from[i]).sum::<f64>();
@@ -298,12 +298,12 @@ impl View {
 }
 
 impl Background {
-    /// The picture of the robot, the shutter open around this time.
+    /// The picture with the robot, with the exposure centred on this time.
     pub fn picture(&self, seconds: f64, robot: impl Fn(f64) -> Spot, rng: &mut Rng) -> Picture {
         let studio = &self.studio;
         let [width, height] = studio.size;
         let mut light = self.light.clone();
-        // Where the robot is while the shutter is open for a row.
+        // The places of the robot while the shutter is open for a row.
         let spots = |row: usize| -> [Turned; TIMES] {
             let late = (row as f64 / height as f64 - 0.5) * studio.readout;
             std::array::from_fn(|i| {
@@ -388,7 +388,7 @@ fn mean(sample: impl Fn(f64, f64) -> f64) -> f64 {
     all.sum::<f64>() / (SAMPLES * SAMPLES) as f64
 }
 
-/// The grey of a tag at a point from its middle; `None` beside it.
+/// The grey of a tag at a point relative to its middle; `None` outside of the tag.
 fn tag(id: usize, [x, y]: [f64; 2]) -> Option<f64> {
     let square = sheet::edge(id) / sheet::SQUARES as f64;
     let half = sheet::SQUARES as f64 / 2.0;
@@ -403,7 +403,7 @@ fn tag(id: usize, [x, y]: [f64; 2]) -> Option<f64> {
     )
 }
 
-/// A place: a point, and cosine and sine of its heading.
+/// A place: a point, and the cosine and sine of its heading.
 #[derive(Clone, Copy)]
 struct Turned([f64; 2], [f64; 2]);
 
@@ -412,14 +412,14 @@ impl Turned {
         Self([x, y], [heading.cos(), heading.sin()])
     }
 
-    /// A point of the floor as seen from here: along the heading, and to the left.
+    /// Converts a point of the floor to this place's frame: along the heading, and to the left.
     fn sees(&self, at: [f64; 2]) -> [f64; 2] {
         let Self([x, y], [cos, sin]) = self;
         let (dx, dy) = (at[0] - x, at[1] - y);
         [dx * cos + dy * sin, dy * cos - dx * sin]
     }
 
-    /// A point of the floor as seen from the robot: right, ahead.
+    /// Converts a point of the floor to the robot's frame: right, ahead.
     fn frame(&self, at: [f64; 2]) -> [f64; 2] {
         let [ahead, left] = self.sees(at);
         [-left, ahead]
@@ -434,7 +434,7 @@ fn cross(a: Vector, b: Vector) -> Vector {
     ]
 }
 
-/// A random number of a normal distribution.
+/// A random number with a standard normal distribution.
 pub fn normal(rng: &mut Rng) -> f64 {
     (0..12).map(|_| rng.f64()).sum::<f64>() - 6.0
 }

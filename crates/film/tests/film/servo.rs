@@ -1,4 +1,4 @@
-//! A servo whose truth is known: a motor behind its pulses, with what a servo has of its own.
+//! A simulated servo whose true values are known: a motor behind its pulses, with dead band, play and friction.
 
 use fastrand::Rng;
 use lizard_film::Picture;
@@ -6,14 +6,14 @@ use lizard_film::orders::{Order, PAUSE, orders};
 
 use super::render::Studio;
 
-/// Time of a frame of the firmware, and step of the simulation, s.
+/// Time of a frame of the firmware, s; below, the step of the simulation, s.
 const FRAME: f64 = 0.02;
 const STEP: f64 = 0.0005;
-/// Frames of a move to a pose.
+/// Frames that a move to a pose takes.
 const MOVE: usize = 8;
-/// Error beyond the dead band with the full torque, deg.
+/// Error beyond the dead band from which the servo uses its full torque, deg.
 pub const FULL: f64 = 3.0;
-/// Dry friction of the gears, as a share of the torque at a stall.
+/// Dry friction of the gears, as a share of the stall torque.
 pub const FRICTION: f64 = 0.02;
 
 /// A servo in the jig.
@@ -21,17 +21,17 @@ pub const FRICTION: f64 = 0.02;
 pub struct Servo {
     /// Angle turned for each deg ordered.
     pub gain: f64,
-    /// deg/s without load.
+    /// Rate without load or friction, deg/s.
     pub rate: f64,
     /// Time constant of the rotor, s.
     pub spin_up: f64,
-    /// Width of the dead band, deg ordered.
+    /// Width of the dead band, in ordered deg.
     pub dead_band: f64,
-    /// Free play of the horn on its shaft, deg in all.
+    /// Total free play of the horn on its shaft, deg.
     pub play: f64,
-    /// The load's torque, clockwise, as a share of that at a stall.
+    /// Torque of the load, clockwise, as a share of the stall torque.
     pub load: f64,
-    /// Change of the pulse in a large step, deg/s.
+    /// Rate of the pulse in a large step, deg/s.
     pub slew: f64,
     /// Time of the first order, s.
     pub begin: f64,
@@ -56,17 +56,17 @@ impl Default for Servo {
 }
 
 impl Servo {
-    /// The steady rate that friction leaves without load, deg/s.
+    /// The steady rate without load, reduced by friction, deg/s.
     pub fn own_rate(&self) -> f64 {
         self.rate * (1.0 - FRICTION)
     }
 
-    /// The time at which all orders are carried out, s.
+    /// The time at which all orders are complete, s.
     pub fn end(&self) -> f64 {
         self.begin + PAUSE * orders(1.0).len() as f64
     }
 
-    /// The angles of the card, deg, each [`STEP`] seconds from the time 0, with orders to a side.
+    /// The angles of the card, deg, at every [`STEP`] from time 0, with orders to the side `way`.
     pub fn turns(&self, way: f64) -> Turning {
         let orders = orders(way);
         let pulses = self.pulses(&orders);
@@ -77,7 +77,7 @@ impl Servo {
                 let error = pulse - at / self.gain;
                 let beyond = (error.abs() - self.dead_band / 2.0).max(0.0);
                 let drive = (beyond / FULL).min(1.0) * (error * self.gain).signum() - self.load;
-                // Friction stops what turns slowly, and holds what stands.
+                // Friction slows a turning motor down to a stop, and holds a motor at rest.
                 let push = self.rate * drive - rate;
                 let held = self.rate * FRICTION;
                 let most = held * STEP / self.spin_up;
@@ -91,7 +91,8 @@ impl Servo {
         Turning(angles)
     }
 
-    /// Takes pictures of the card on the horn, at the rate only while it turns fast, and hands them on with their times.
+    /// Takes pictures of the card on the horn, at the full rate only while it turns fast, and passes them on with
+    /// their times.
     pub fn pictures(
         &self,
         studio: &Studio,
@@ -115,7 +116,7 @@ impl Servo {
         }
     }
 
-    /// The pulse in each frame, as the angle that it stands for.
+    /// The pulse in each frame, as an angle in deg.
     fn pulses(&self, orders: &[Order]) -> Vec<f64> {
         let frames = (self.end() / FRAME) as usize + 1;
         let (mut from, mut pulse) = (0.0, 0.0);

@@ -7,16 +7,16 @@ use crate::render::Studio;
 use crate::studio::{TRUE_SIZE, film_of, small};
 use crate::walk::{Show, Varies, gait, truth};
 
-/// Pictures in a second.
+/// Pictures per second.
 const RATE: f64 = 8.0;
-/// A robot that varies a little, as built ones do.
+/// A robot whose cycles vary a little, as those of real robots do.
 const VARIES: Varies = Varies {
     cycle: [0.2, 0.2, 0.004],
     clock: 0.0,
     ruler: 0.0,
 };
 
-/// Films walks with rests of a time, and finds camera and path.
+/// Films walks with rests of `rest` seconds between them, and finds the camera and the path.
 fn watched(walks: &[(&Gait, usize)], rest: f64) -> (Watched, Show) {
     let mut rng = Rng::with_seed(6);
     let show = Show::new([-60.0, 0.0, 0.0], walks, rest, VARIES, &mut rng);
@@ -29,7 +29,7 @@ fn studio() -> Studio {
     small(5, 20.0)
 }
 
-/// Checks that a result is that of a gait.
+/// Checks that a result agrees with the true movement of a gait.
 fn is_way_of(measured: &Measured, gait: &Gait) {
     let truth = truth(gait);
     let parts = [
@@ -55,7 +55,7 @@ fn each_gait_of_a_film_is_found_between_its_rests_and_measured() {
     let walks = watched.walks(rest(&gaits));
     assert_eq!(walks.len(), order.len(), "{walks:?}");
     for (found, truth) in walks.iter().zip(show.spans()) {
-        // With the rests around it, and without a picture at which it already moves.
+        // A found walk includes parts of the rests around it, and misses at most one picture of the movement.
         let early = truth[0] - found[0];
         let late = found[1] - truth[1];
         assert!((-0.2..1.2).contains(&early), "{found:?} {truth:?}");
@@ -68,12 +68,12 @@ fn each_gait_of_a_film_is_found_between_its_rests_and_measured() {
             .expect("it is measured");
         is_way_of(&measured, &gaits[i]);
     }
-    // Both walks are one result, which is known better.
+    // Both walks together give one result, which is more accurate.
     let [one, other] = [0, 3].map(|i| watched.measure(&gaits[0], Some(walks[i])).expect("a walk"));
     let both = Measured::together(&[one.clone(), other.clone()], &gaits[0]);
     is_way_of(&both, &gaits[0]);
     assert_eq!(both.cycles, [&one.cycles[..], &other.cycles[..]].concat());
-    // The wrong order is no guess.
+    // A wrong order of the gaits is reported and not accepted.
     let wrong = watched
         .measure(&gaits[2], Some(walks[1]))
         .expect_err("it is left");
@@ -123,7 +123,7 @@ fn gaits_without_a_rest_between_them_are_not_mixed() {
         assert_eq!(walks.len(), 1);
         for gait in [first, second] {
             match watched.measure(gait, Some(walks[0])) {
-                // It is found that one of them goes farther.
+                // A result must be that of this gait alone: the gait that moves farther can be told from the other.
                 Ok(measured) => is_way_of(&measured, gait),
                 Err(trouble) => assert!(
                     matches!(
@@ -160,7 +160,7 @@ fn a_robot_that_turns_its_head_between_walks_has_not_walked() {
     assert_eq!(watched.walks(rest(&[walk])).len(), 1);
 }
 
-/// The phase, axis and errors of the largest difference within a cycle.
+/// The largest difference within a cycle: its phase, its axis and its size in standard errors.
 fn farthest(measured: &Measured) -> (f64, usize, f64) {
     let all = measured.within.iter().flat_map(|point| {
         let differs = point.differs().map(f64::abs);

@@ -1,4 +1,4 @@
-//! How well films of a robot that slides down a tilted board are measured.
+//! The accuracy of measurements in films of a robot that slides down a tilted board.
 
 use fastrand::Rng;
 use lizard_film::{Figure, Film, Setup, Slide, SlideTrouble, Watched};
@@ -28,7 +28,7 @@ fn watched(film: &Film) -> Watched {
     film.watch(SETUP).expect("it is watched")
 }
 
-/// Checks a figure against its truth, and its error against the largest useful one.
+/// Checks a figure against its true value, and its error against the largest acceptable one.
 fn check(figure: Figure, truth: f64, largest: f64) {
     println!("{figure:?}, truth {truth:.3}");
     assert!(
@@ -55,7 +55,7 @@ fn a_slide_shows_resting_and_sliding_friction_with_head_or_tail_first() {
     }
 }
 
-/// A board with little friction: its film is short.
+/// A board with little friction, which needs only a short film.
 const SLIPPERY: Board = Board {
     resting: 0.35,
     sliding: 0.3,
@@ -112,7 +112,7 @@ fn what_is_no_slide_down_a_board_is_named() {
     );
 }
 
-/// `make measure-test`. What is called level is off by 0.3 deg, as a bubble is.
+/// Run by `make measure-test`. The board's level position is off by 0.3 deg, as with a spirit level.
 #[test]
 #[ignore = "takes minutes; make measure-test"]
 fn slides_of_many_boards_show_the_truth_within_two_errors() {

@@ -6,13 +6,13 @@ use lizard_film::{Film, Setup};
 use crate::render::{Spot, Studio};
 use crate::walk::Walk;
 
-/// Setup of a sheet in true size.
+/// The setup of a sheet that is printed in true size.
 pub const TRUE_SIZE: Setup = Setup {
     scale: 1.0,
     height: 83.0,
 };
 
-/// A studio with a camera that is known, and with few pixels, which the sheet fills.
+/// A studio with a known camera and few pixels, whose picture the sheet fills.
 pub fn small(seed: u64, tilt: f64) -> Studio {
     let mut studio = Studio::random(&mut Rng::with_seed(seed));
     (studio.size, studio.focal) = ([640, 360], 1.0);
@@ -21,12 +21,12 @@ pub fn small(seed: u64, tilt: f64) -> Studio {
     studio
 }
 
-/// Films a walk on a tripod.
+/// Films a walk with the camera on a tripod.
 pub fn film(studio: &Studio, walk: &Walk, rate: f64, rng: &mut Rng) -> Film {
     film_of(studio, walk.seconds(), rate, |time| walk.at(time), rng)
 }
 
-/// Films a robot that is somewhere at any time.
+/// Films a robot whose place at any time is given by `robot`.
 pub fn film_of(
     studio: &Studio,
     seconds: f64,

@@ -1,4 +1,4 @@
-//! Films that cannot be measured, each with its reason.
+//! Films that cannot be measured, each with the reason.
 
 use fastrand::Rng;
 use lizard_film::{Film, Gait, Measured, Picture, Setup, Trouble};
@@ -7,14 +7,14 @@ use crate::render::{Spot, Studio};
 use crate::studio::{TRUE_SIZE, film_of, small};
 use crate::walk::{Varies, Walk, gait, truth};
 
-/// Pictures in a second: few, because only the reason counts.
+/// Pictures per second: few, because only the reason counts.
 const RATE: f64 = 8.0;
 
 fn studio() -> Studio {
     small(5, 20.0)
 }
 
-/// The walk of a gait around the middle.
+/// A walk that is centred on the origin.
 fn walk(gait: &Gait, cycles: usize) -> Walk {
     let start = -truth(gait).forward * cycles as f64 / 2.0;
     Walk::new(
@@ -38,7 +38,7 @@ fn film(studio: &Studio) -> Film {
     )
 }
 
-/// The reason why five cycles of `walk` are not measured in this studio.
+/// The reason why five cycles of `walk` cannot be measured in this studio.
 fn trouble(studio: &Studio, setup: Setup) -> Trouble {
     film(studio)
         .measure(setup, &gait("walk"))
@@ -121,7 +121,7 @@ fn pictures_of_another_size_and_times_that_do_not_rise_are_refused() {
     );
 }
 
-/// A film in which the camera changes its place in the middle.
+/// A film in which the camera moves to another place in the middle.
 fn pushed(hidden: Vec<usize>) -> Film {
     let gait = gait("walk");
     let walk = walk(&gait, 5);
@@ -160,7 +160,7 @@ fn a_camera_that_moves_has_to_see_every_tag_of_the_floor() {
     );
 }
 
-/// Checks that a film tells the true way.
+/// Checks that the measured distance is the true one.
 fn goes_as_far(measured: &Measured, gait: &Gait) {
     let error = measured.forward.mean - truth(gait).forward;
     assert!(error.abs() < 0.2, "{:?}", measured.forward);
@@ -227,7 +227,7 @@ fn a_card_at_another_height_is_found_by_its_size() {
     );
 }
 
-/// Films a robot whose place follows from the time.
+/// The reason why a film of a robot whose place is given by `robot` cannot be measured.
 fn moving(robot: impl Fn(f64) -> Spot) -> Trouble {
     let film = film_of(&studio(), 4.0, RATE, robot, &mut Rng::with_seed(2));
     film.measure(TRUE_SIZE, &gait("walk")).expect_err("no walk")
@@ -317,7 +317,7 @@ fn a_film_whose_rate_is_off_by_some_percent_shows_the_way_of_a_cycle_and_its_tim
     }
 }
 
-/// A picture of the sheet and the card, and beside it the same once more, or nothing.
+/// A picture of the sheet and the card, with either a second copy of the same or nothing to the right of it.
 fn doubled(is_twice: bool) -> Picture {
     let mut rng = Rng::with_seed(2);
     let picture = studio()

@@ -1,4 +1,4 @@
-//! How well films of a servo whose truth is known are measured.
+//! The accuracy of measurements in films of a servo whose true values are known.
 
 use fastrand::Rng;
 use lizard_contact::Place;
@@ -7,16 +7,17 @@ use lizard_film::{Figure, Film, Jig, Seen, Setup, Turns, TurnsTrouble};
 use crate::render::{Studio, normal};
 use crate::servo::{FRICTION, FULL, Servo};
 
-/// The jig of steps counter-clockwise.
+/// The jig for steps in the counter-clockwise direction.
 const JIG: Jig = Jig {
     way: 1.0,
     slew: 1000.0,
     spin_up: 0.02,
 };
-/// The load's torque as a share of that at a stall: 19.6 N mm of 176.5.
+/// The load's torque as a share of the stall torque: 19.6 N mm of 176.5.
 const LOAD: f64 = 0.111;
 
-/// A camera without a picture: pictures in a second, exposure time, and spread of an angle, deg.
+/// A camera that makes no pictures but adds errors to angles: pictures per second, exposure time in s, and standard
+/// deviation of an angle in deg.
 #[derive(Clone, Copy)]
 struct Eye {
     rate: f64,
@@ -34,7 +35,7 @@ impl Eye {
         }
     }
 
-    /// The path of a card as its tag tells it: the mean of the angles while the shutter is open.
+    /// The path of a card as its tag would show it: each angle is the mean over the time that the shutter is open.
     fn path(self, servo: &Servo, rng: &mut Rng) -> Vec<Seen> {
         const BEGIN: f64 = 0.3;
         let turning = servo.turns(1.0);
@@ -75,7 +76,8 @@ fn any(rng: &mut Rng) -> Servo {
     }
 }
 
-/// Figures and their truths: the share of those that are off by two errors at most, and their mean error.
+/// Compares figures with their true values: returns the share of those that are off by two errors at most, and the
+/// mean error.
 fn judged(figures: &[(Figure, f64)]) -> [f64; 2] {
     let within = figures
         .iter()
@@ -85,7 +87,8 @@ fn judged(figures: &[(Figure, f64)]) -> [f64; 2] {
     [within.count() as f64 / count, errors / count]
 }
 
-/// The dead band that small steps show, of those between the controller's own and with the gears' friction.
+/// The true dead band nearest to the found one: any value from the controller's own width to that plus the gears'
+/// friction is right.
 fn dead_band(servo: &Servo, found: f64) -> f64 {
     let friction = 2.0 * FRICTION * FULL;
     found.clamp(servo.dead_band, servo.dead_band + friction)
@@ -133,7 +136,7 @@ fn a_load_on_a_drum_tells_the_torque_at_a_stall() {
     for _ in 0..30 {
         let [free, loaded] = films(&mut rng);
         let stall = free.stall(&loaded, 19.6).expect("a stall");
-        // The line of a motor with friction ends at what friction leaves.
+        // The motor's line ends at a torque that friction reduces.
         stalls.push((stall, 19.6 / LOAD * (1.0 - FRICTION)));
         assert_eq!(loaded.stall(&free, 19.6), Err(TurnsTrouble::Swapped));
     }
@@ -154,7 +157,7 @@ fn a_load_that_slows_nothing_down_tells_no_torque() {
     assert!(words.contains("take a heavier weight"), "{words}");
 }
 
-/// The reason why a path is not measured.
+/// The reason why a path cannot be measured.
 fn trouble(path: &[Seen]) -> TurnsTrouble {
     Turns::of(path, JIG).expect_err("it is not measured")
 }
@@ -230,7 +233,7 @@ fn orders_that_are_slower_than_the_servo_do_not_pass_for_its_rate() {
     assert!(matches!(refused, TurnsTrouble::Ordered { .. }), "{refused}");
 }
 
-/// `make measure-test`.
+/// Run by `make measure-test`.
 #[test]
 #[ignore = "takes minutes; make measure-test"]
 fn rendered_films_of_horns_show_the_truth_within_two_errors() {

@@ -1,4 +1,4 @@
-//! `lizard gaits`: the results of checking every gait, and the distance that each walks.
+//! `lizard gaits`: the results of checking every gait, and the predicted distance of each.
 
 use std::io::Write;
 
@@ -56,10 +56,10 @@ pub struct Args {
     robot: RobotFile,
 }
 
-/// Prints the table, the objects or the trace.
+/// Prints the table, the JSON objects or the trace.
 ///
 /// # Errors
-/// Fails for a wrong robot.toml, a gait that it does not have, an output that cannot be written.
+/// Fails for an invalid robot.toml, a gait that it does not have, or an output that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let mut out = std::io::stdout().lock();
@@ -88,7 +88,7 @@ fn with_spinner<T>(table: impl FnOnce() -> T) -> T {
     table()
 }
 
-/// One cycle of a gait, frame by frame, as the firmware reads its table.
+/// The angles of one cycle of a gait as CSV, frame by frame, as the firmware reads them from its table.
 fn trace(robot: &Robot, name: &str) -> Result<String, Failure> {
     let Some(gait) = robot.gait(name) else {
         let names: Vec<&str> = robot.gaits().iter().map(|gait| gait.name()).collect();
@@ -106,29 +106,29 @@ fn trace(robot: &Robot, name: &str) -> Result<String, Failure> {
     Ok(text)
 }
 
-/// A gait's figures under the names of `--json`.
+/// The values of a gait, under their names in `--json`.
 #[derive(Serialize)]
 struct GaitLine<'a> {
     gait: &'a str,
     /// Duration of one cycle, s.
     period: f64,
-    /// deg/s, over one frame
+    /// Fastest speed of a servo over one frame, deg/s.
     peak_speed: f64,
     peak_servo: &'static str,
-    /// deg, over all phases
+    /// Largest error of the table over all phases, deg.
     table_error_max: f64,
     table_error_rms: f64,
     type2: LeastMargin,
     type1: LeastMargin,
     leg: LeastMargin,
-    /// mm from nominal, smallest and largest
+    /// Smallest and largest slider travel from nominal, mm.
     stroke: [f64; 2],
-    /// Displacement of one cycle: mm and deg, counter-clockwise; null is
-    /// what depends on a tie of two feet against two
+    /// Displacement of one cycle, mm and deg counter-clockwise; null for a value that depends on a tie of two feet
+    /// against two.
     predicted: Predicted,
-    /// Largest share of a servo's torque-speed line
+    /// Largest used share of a servo's torque-speed line.
     line: f64,
-    /// The same displacement with the servos of robot.toml
+    /// The same displacement, limited by the servos of robot.toml.
     by_servos: Predicted,
 }
 
@@ -146,16 +146,16 @@ struct Predicted {
     turn: Option<f64>,
 }
 
-/// A routine's figures under the names of `--json`.
+/// The values of a routine, under their names in `--json`.
 #[derive(Serialize)]
 struct RoutineLine<'a> {
     routine: &'a str,
     steps: usize,
     /// Null for a routine without an end.
     repeat: Option<u16>,
-    /// Duration of one round from standing, s.
+    /// Duration of one round that starts from standing, s.
     seconds: f64,
-    /// Displacement of one round, as that of a gait.
+    /// Displacement of one round, in the same form as that of a gait.
     predicted: Predicted,
     by_servos: Predicted,
 }

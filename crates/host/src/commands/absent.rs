@@ -1,4 +1,4 @@
-//! Commands that a program built without one of its cargo features lacks.
+//! The commands that this build lacks because it was built without one of the cargo features.
 
 use std::ffi::OsString;
 
@@ -6,7 +6,7 @@ use super::known::CommandEntry;
 use crate::Failure;
 use crate::shared::suggestion::did_you_mean;
 
-/// Describes the commands that need this feature.
+/// Describes the commands that need a feature, for messages.
 pub(super) fn words(feature: &str) -> &'static str {
     match feature {
         "simulator" => "the simulator",
@@ -17,7 +17,7 @@ pub(super) fn words(feature: &str) -> &'static str {
     }
 }
 
-/// True if this build has the feature.
+/// True if this build has a feature.
 fn is_built(feature: &str) -> bool {
     let features = [
         ("simulator", cfg!(feature = "simulator")),
@@ -28,7 +28,7 @@ fn is_built(feature: &str) -> bool {
     features.contains(&(feature, true))
 }
 
-/// The commands that this build lacks, for the help; empty for a complete build.
+/// Lists the commands that this build lacks, for the help; empty for a complete build.
 pub(super) fn list(commands: &[CommandEntry]) -> String {
     list_in_build(commands, is_built)
 }
@@ -55,7 +55,7 @@ fn list_in_build(commands: &[CommandEntry], has: impl Fn(&str) -> bool) -> Strin
     )
 }
 
-/// Explains why this build has no command of this name.
+/// Explains why this build lacks the command that was typed.
 #[cfg_attr(
     all(
         feature = "simulator",
@@ -79,7 +79,7 @@ pub struct AbsentCommand {
 
 #[cfg(not(all(feature = "paper", feature = "simulator")))]
 impl AbsentCommand {
-    /// Explains why this build has no command of this name.
+    /// Explains why this build lacks this command.
     pub fn failure(name: &str, needs: &[&str]) -> Failure {
         missing(name, needs, is_built)
     }

@@ -1,6 +1,6 @@
-//! A row of the table of commands.
+//! The rows of the table of commands, and their groups.
 
-/// The heading of a command in the help.
+/// A group of commands, with its heading in the help.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Group {
     /// Commands for a board, real or simulated.
@@ -18,7 +18,7 @@ pub(super) enum Group {
 }
 
 impl Group {
-    /// All headings in the order of the help, the owner's first.
+    /// All groups in the order of the help; those for owners of a robot come first.
     pub(super) const ALL: [Self; 6] = [
         Self::Drive,
         Self::Simulate,
@@ -28,7 +28,7 @@ impl Group {
         Self::Itself,
     ];
 
-    /// The words of the heading.
+    /// The text of the heading.
     pub(super) fn title(self) -> &'static str {
         match self {
             Self::Drive => "Drive the robot",
@@ -45,11 +45,11 @@ impl Group {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CommandEntry {
     pub(super) group: Group,
-    /// The command's variant of the enum of commands.
+    /// The name of the command's variant in the enum of commands.
     pub(super) variant: &'static str,
     /// Aliases of the command.
     pub(super) also: &'static [&'static str],
-    /// The cargo features that it needs.
+    /// The cargo features that the command needs.
     pub(super) needs: &'static [&'static str],
 }
 

@@ -1,9 +1,8 @@
-//! The table of the program's commands: each command's group in the help, its name, its
-//! aliases, the cargo features it needs, its arguments and the function that runs it.
+//! The table of the program's commands. For each command it has the group in the help, the name, the aliases, the
+//! cargo features that it needs, its arguments and the function that runs it.
 //!
-//! A build without a feature lacks commands, and explains that when one of them is used.
-//! So the table serves twice: as the enum of the commands of this build, and as the list
-//! of all commands.
+//! A build without a feature lacks some commands, and explains that when one of them is used. So the table serves two
+//! purposes: it makes the enum of the commands of this build, and the list of all commands.
 
 mod absent;
 pub mod completions;
@@ -22,7 +21,7 @@ use crate::shared::plain::readable_lines;
 use known::{CommandEntry, Group};
 use nested::With;
 
-/// The table below, as [`Command`] and as [`KNOWN`].
+/// Makes [`Command`] and [`KNOWN`] from the table below.
 macro_rules! commands {
     ($(
         $group:ident {
@@ -71,7 +70,7 @@ macro_rules! commands {
             }
         }
 
-        /// All commands that there are, in the order of the help.
+        /// All commands, including those that this build lacks, in the order of the help.
         const KNOWN: &[CommandEntry] = &[$($(
             CommandEntry {
                 group: Group::$group,
@@ -118,7 +117,7 @@ commands! {
     }
 }
 
-/// Commands of the previous version, and the words that replace them.
+/// Commands of the previous version, and the words that replace each.
 const RENAMED: [(&str, &[&str]); 17] = [
     ("solve", &["pose"]),
     ("fk", &["pose"]),
@@ -193,7 +192,7 @@ struct Cli {
     command: Command,
 }
 
-/// All commands and options, the commands in groups.
+/// The program's commands and options, with the commands in groups.
 pub fn program() -> clap::Command {
     let addresses = addresses(env!("CARGO_PKG_HOMEPAGE"), env!("CARGO_PKG_REPOSITORY"));
     groups::grouped(Cli::command().after_help(addresses), KNOWN)
@@ -230,7 +229,7 @@ pub fn run_and_report(arguments: Vec<OsString>) -> u8 {
         Ok(()) => 0,
         Err(failure) if failure.is_silent() => 0,
         Err(failure) => {
-            // It may quote a file or a board. A terminal that is gone is no reason to panic.
+            // The message may quote a file or a board. A closed terminal is no reason to panic.
             let message = readable_lines(&failure.to_string());
             let _ = writeln!(io::stderr(), "lizard: {message}");
             failure.exit_code()
@@ -238,8 +237,7 @@ pub fn run_and_report(arguments: Vec<OsString>) -> u8 {
     }
 }
 
-/// Ends the program with clap's message: the help, or an error, in which a very long word is
-/// shortened.
+/// Ends the program with clap's message, which is the help or an error; a very long word in it is shortened.
 fn exit_with(error: &clap::Error) -> ! {
     let text = error.render().to_string();
     let short = readable_lines(&text);
@@ -256,7 +254,7 @@ mod tests {
 
     use super::*;
 
-    /// With every feature.
+    /// Tests of a build with every feature.
     #[cfg(all(
         feature = "simulator",
         feature = "paper",

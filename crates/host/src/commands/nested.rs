@@ -1,8 +1,7 @@
-//! Commands with others below them, such as `lizard calibrate backup`.
+//! Commands with subcommands, such as `lizard calibrate backup`.
 //!
-//! A command that does to a file what another one does to a board, or that measures what
-//! another one runs, is below it, so that the list of commands stays short. The modules of the
-//! commands know nothing of this.
+//! A command becomes a subcommand if it does to a file what another one does to a board, or measures what another one
+//! runs. So the list of commands stays short. The modules of the commands do not know about this.
 
 use clap::{Args, Subcommand};
 
@@ -16,8 +15,7 @@ use crate::{Failure, commands::completions};
 #[cfg(not(all(feature = "paper", feature = "simulator")))]
 use super::absent::AbsentCommand;
 
-// No documentation comments on the types of this file: clap would show them in place of those of the
-// arguments.
+// The types of this file have no documentation comments: clap would show them in place of those of the arguments.
 #[derive(Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub struct With<A: Args, B: Subcommand> {
@@ -33,7 +31,7 @@ pub enum OfFlash {
     Image(drive::image::Args),
 }
 
-/// Runs `lizard flash` or a command below it.
+/// Runs `lizard flash` or its subcommand.
 #[cfg(feature = "console")]
 pub fn flash(args: With<drive::flash::Args, OfFlash>) -> Result<(), Failure> {
     match args.below {
@@ -48,7 +46,7 @@ pub enum OfInfo {
     Ports(drive::ports::Args),
 }
 
-/// Runs `lizard info` or a command below it.
+/// Runs `lizard info` or its subcommand.
 #[cfg(feature = "console")]
 pub fn info(args: With<drive::console::info::Args, OfInfo>) -> Result<(), Failure> {
     match args.below {
@@ -67,7 +65,7 @@ pub enum OfConsole {
     Replay(AbsentCommand),
 }
 
-/// Runs `lizard console` or a command below it.
+/// Runs `lizard console` or its subcommand.
 #[cfg(feature = "console")]
 pub fn console(
     args: With<drive::console::interactive::ConsoleArgs, OfConsole>,
@@ -88,7 +86,7 @@ pub enum OfCalibrate {
     Restore(drive::console::backup::RestoreArgs),
 }
 
-/// Runs `lizard calibrate` or a command below it.
+/// Runs `lizard calibrate` or one of its subcommands.
 #[cfg(feature = "console")]
 pub fn calibrate(args: With<drive::console::calibrate::Args, OfCalibrate>) -> Result<(), Failure> {
     match args.below {
@@ -102,14 +100,14 @@ pub fn calibrate(args: With<drive::console::calibrate::Args, OfCalibrate>) -> Re
 #[derive(Subcommand)]
 pub enum OfMeasure {
     Sheet(crate::measure::SheetArgs),
-    // Boxed, so that the commands are about equally large.
+    // Boxed, so that the variants have similar sizes.
     Servo(Box<crate::measure::ServoArgs>),
     Steps(crate::measure::StepsArgs),
     Slope(crate::measure::SlopeArgs),
     Keys(crate::measure::KeysArgs),
 }
 
-/// Runs `lizard measure` or a command below it.
+/// Runs `lizard measure` or one of its subcommands.
 #[cfg(feature = "parts")]
 pub fn measure(args: With<crate::measure::Args, OfMeasure>) -> Result<(), Failure> {
     match args.below {
@@ -128,7 +126,7 @@ pub enum OfSim {
     Bench(simulate::bench::Args),
 }
 
-/// Runs `lizard sim` or a command below it.
+/// Runs `lizard sim` or its subcommand.
 #[cfg(feature = "simulator")]
 pub fn sim(args: With<simulate::sim::Args, OfSim>) -> Result<(), Failure> {
     match args.below {
@@ -146,7 +144,7 @@ pub enum OfDraw {
     Charts(AbsentCommand),
 }
 
-/// Runs `lizard draw` or a command below it.
+/// Runs `lizard draw` or its subcommand.
 pub fn draw(args: With<draw::Args, OfDraw>) -> Result<(), Failure> {
     match args.below {
         #[cfg(feature = "paper")]
@@ -162,7 +160,7 @@ pub enum OfCompletions {
     Man(completions::ManArgs),
 }
 
-/// Runs `lizard completions` or a command below it for this program.
+/// Runs `lizard completions` or its subcommand, for `program`.
 pub fn completions(
     args: With<completions::CompletionsArgs, OfCompletions>,
     program: clap::Command,

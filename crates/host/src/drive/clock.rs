@@ -1,14 +1,15 @@
-//! Time that does not pass while this program stands still, and a time limit by it.
+//! A clock that does not advance while this program is suspended, and a time limit by that clock.
 //!
-//! A machine that sleeps or is too busy holds this program up. Afterwards the clock of the machine says that the time is
-//! over, although nothing had a chance to arrive or to be read.
+//! A machine that sleeps or is too busy suspends this program. When it continues, a time limit by the machine's clock
+//! would be over, although nothing could arrive or be read meanwhile.
 
 use std::time::{Duration, Instant};
 
-/// The longest time that counts between two looks at the clock. A read ends after some milliseconds.
+/// The longest time that counts between two readings of the machine's clock. A read of the port ends after some
+/// milliseconds.
 const LONGEST_STEP: Duration = Duration::from_millis(100);
 
-/// A clock that falls behind that of the machine by every pause of this program.
+/// A clock that advances like the machine's, except during pauses of this program.
 #[derive(Debug)]
 pub struct Clock {
     now: Instant,
@@ -16,7 +17,7 @@ pub struct Clock {
 }
 
 impl Clock {
-    /// Starts at the time of the machine. [`Clock::now`] must be called after each read.
+    /// Starts at the machine's time. [`Clock::now`] must be called after each read.
     pub fn start() -> Self {
         let now = Instant::now();
         Self {
@@ -25,7 +26,7 @@ impl Clock {
         }
     }
 
-    /// Returns the time, without pauses.
+    /// Returns the time, excluding pauses.
     pub fn now(&mut self) -> Instant {
         self.now_at(Instant::now())
     }
@@ -38,7 +39,7 @@ impl Clock {
     }
 }
 
-/// A time limit that begins when it is made.
+/// A time limit that starts at its creation.
 #[derive(Debug)]
 pub struct Deadline {
     clock: Clock,

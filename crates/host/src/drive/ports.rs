@@ -21,19 +21,19 @@ pub struct Args {
     json: bool,
 }
 
-/// A port under the names of `--json`.
+/// A serial port, with the names of `--json`.
 #[derive(Debug, Serialize)]
 struct Line {
     port: String,
     /// Four hexadecimal digits, as lsusb prints them.
     vendor: String,
     product: String,
-    /// The name that the chip gives itself.
+    /// The product name that the chip reports.
     name: Option<String>,
-    /// The known kind of chip.
+    /// The kind of chip and of board, if known.
     chip: Option<&'static str>,
     may_open: bool,
-    /// The program that has it open, if the system tells.
+    /// Another program that has the port open, if the system shows it.
     open_in: Option<String>,
 }
 
@@ -51,7 +51,7 @@ impl Line {
     }
 }
 
-/// Words for a chip by its USB numbers: vendor and product.
+/// Description of a chip by its USB numbers: vendor and product.
 fn chip(ids: [u16; 2]) -> Option<&'static str> {
     Some(match ids {
         [vendor, 0x0001 | 0x0043 | 0x0243] if find::ARDUINO.contains(&vendor) => "an Arduino UNO",

@@ -1,4 +1,4 @@
-//! `lizard measure`: the ways of gaits in films.
+//! `lizard measure`: measures in films how far gaits move the robot.
 
 use std::io::{self, Write};
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! Measured figures beside those of robot.toml, as a table and as lines for that file.
+//! Measured values beside those of robot.toml, as a table and as lines for that file.
 
 use std::fmt::Write as _;
 
@@ -10,19 +10,19 @@ use serde::Serialize;
 /// A measured key of robot.toml.
 #[derive(Serialize)]
 pub(super) struct Key {
-    /// Its table, as `servo.A1`, and its name.
+    /// The key's table, such as `servo.A1`; `key` is its name.
     table: String,
     key: &'static str,
     measured: f64,
     error: f64,
-    /// By robot.toml, for the same supply.
+    /// The value by robot.toml, for the same supply.
     robot: f64,
-    /// The measured one less that, in standard errors.
+    /// The measured value minus that of robot.toml, in standard errors.
     differs: f64,
     agrees: bool,
     #[serde(skip)]
     decimals: usize,
-    /// The value in robot.toml over that for the supply of the measurement.
+    /// The value in robot.toml divided by that for the supply of the measurement.
     #[serde(skip)]
     scale: f64,
 }
@@ -49,7 +49,7 @@ impl Key {
         }
     }
 
-    /// The key whose value in robot.toml is so many times that for the supply of the measurement.
+    /// Returns the key with this ratio of its value in robot.toml to that for the supply of the measurement.
     pub(super) fn scaled(self, scale: f64) -> Self {
         Self { scale, ..self }
     }
@@ -60,7 +60,7 @@ impl Key {
     }
 }
 
-/// The table of figures.
+/// The table of measured values.
 pub(super) fn table(keys: &[Key]) -> String {
     let mut text = format!("{:<28}measured   error  robot.toml\n", "");
     for key in keys {
@@ -94,7 +94,8 @@ pub(super) fn lines(keys: &[Key]) -> String {
     text
 }
 
-/// Writes the keys that contradict a robot.toml into its text, each with a comment; all else stays as it is, byte for byte.
+/// Returns the text of robot.toml in which the keys that differ from their measurement are replaced, each with a
+/// comment; the rest stays as it is, byte for byte.
 ///
 /// # Errors
 /// Fails if the text has no place for a key.

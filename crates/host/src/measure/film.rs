@@ -1,4 +1,4 @@
-//! A film's file, read and watched.
+//! Reading a film's file, and finding the robot's path in it.
 
 use std::fmt::Display;
 use std::path::Path;
@@ -10,10 +10,10 @@ use super::{frames, grey, through_ffmpeg};
 use crate::Failure;
 use crate::shared::files::note_input;
 
-/// Reads a film, and finds camera and path in it.
+/// Reads a film, and finds the camera and the robot's path in it.
 ///
 /// # Errors
-/// Fails for a film that cannot be read, or one whose tags tell no path.
+/// Fails for a film that cannot be read, or one whose tags show no path.
 pub(super) fn watch(path: &Path, rate: Option<f64>, setup: Setup) -> Result<WatchedFilm, Failure> {
     let name = path.display().to_string();
     let about = |trouble: Trouble| about(&name, &trouble);
@@ -21,12 +21,12 @@ pub(super) fn watch(path: &Path, rate: Option<f64>, setup: Setup) -> Result<Watc
     Ok(WatchedFilm { name, watched })
 }
 
-/// The failure of a film for a reason.
+/// The failure of a film, with its name and the reason.
 pub(super) fn about(name: &str, trouble: &dyn Display) -> Failure {
     Failure::Input(format!("{name}: {trouble}"))
 }
 
-/// Reads a film.
+/// Reads a film from its file, or from a folder of pictures.
 fn read(
     path: &Path,
     rate: Option<f64>,

@@ -1,4 +1,4 @@
-//! The options that say how films were taken, and their numbers.
+//! The options that describe how films were taken, and the ranges of their values.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use lizard_measure::WatchedFilm;
 use super::film;
 use crate::Failure;
 
-/// Lengths of the ruler of 100 mm that a printer may make of it, mm.
+/// Range in which a printer may scale the ruler of 100 mm, mm.
 const RULER: [f64; 2] = [85.0, 115.0];
 
 /// How films were taken.
@@ -23,7 +23,7 @@ pub(super) struct Filming {
 }
 
 impl Filming {
-    /// The measures of a sheet whose card is at a height above the strips, mm.
+    /// The setup of a film: the scale of the printed sheet, and the height of the tag above the strips, mm.
     pub(super) fn setup(&self, height: f64) -> Setup {
         Setup {
             scale: self.ruler / sheet::RULER,
@@ -31,10 +31,10 @@ impl Filming {
         }
     }
 
-    /// Reads a film, and finds camera and path in it.
+    /// Reads a film, and finds the camera and the robot's path in it.
     ///
     /// # Errors
-    /// Fails for a film that cannot be read, or one whose tags tell no path.
+    /// Fails for a film that cannot be read, or one whose tags show no path.
     pub(super) fn watch(&self, path: &Path, setup: Setup) -> Result<WatchedFilm, Failure> {
         film::watch(path, self.fps, setup)
     }

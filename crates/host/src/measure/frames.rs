@@ -1,17 +1,17 @@
-//! The pictures of a folder in their order, and their times.
+//! The pictures of a folder in order, and their times.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::Failure;
 
-/// The ends of the names of picture files.
+/// File extensions of pictures.
 const ENDS: [&str; 3] = ["png", "jpg", "jpeg"];
 
-/// The pictures of a folder by the numbers in their names, each with its time, s.
+/// The pictures of a folder in the order of the numbers in their names, each with its time, s.
 ///
 /// # Errors
-/// Fails without pictures, or if neither the rate nor the names tell the times.
+/// Fails without pictures, or if neither the rate nor the names give the times.
 pub(super) fn of_folder(folder: &Path, rate: Option<f64>) -> Result<Vec<(f64, PathBuf)>, Failure> {
     let cannot = |error: std::io::Error| {
         Failure::Input(format!("cannot read {}: {error}", folder.display()))
@@ -54,7 +54,7 @@ fn stem(path: &Path) -> String {
         .into_owned()
 }
 
-/// A name as words and numbers, so that 10 comes after 9.
+/// A sort key for names: words and numbers, so that 10 comes after 9.
 fn in_order(name: &str) -> Vec<(u64, String)> {
     let mut parts: Vec<(u64, String)> = Vec::new();
     let mut was_digit = None;

@@ -1,4 +1,4 @@
-//! A picture file as a grey picture.
+//! Reading a picture file as a grey picture.
 
 use std::fs;
 use std::io::Cursor;
@@ -14,7 +14,7 @@ use crate::Failure;
 /// Reads a PNG or JPEG file.
 ///
 /// # Errors
-/// Fails if it cannot be read or is no picture.
+/// Fails if the file cannot be read or is no picture.
 pub(super) fn read(path: &Path) -> Result<Picture, Failure> {
     let name = path.display();
     let bytes =

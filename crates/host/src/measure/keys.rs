@@ -1,4 +1,4 @@
-//! `lizard measure keys`: the keys of robot.toml by ways that were measured.
+//! `lizard measure keys`: identifies keys of robot.toml from measured distances per cycle.
 
 use std::path::{Path, PathBuf};
 
@@ -13,7 +13,7 @@ use crate::shared::json;
 use crate::shared::progress::Spinner;
 use crate::{Failure, RobotFile};
 
-/// Largest difference between the times of a cycle by two robot.toml that are the same, s.
+/// Largest difference between cycle times at which two robot.toml count as the same, s.
 const SAME_PERIOD: f64 = 0.005;
 
 /// Find the keys of robot.toml with which the model goes as far as the robot did
@@ -42,7 +42,7 @@ pub struct KeysArgs {
     robot: RobotFile,
 }
 
-/// The part of the output of `lizard measure --json` that counts here.
+/// The part of the output of `lizard measure --json` that is used here.
 #[derive(Deserialize)]
 struct Output {
     gaits: Vec<Measured>,
@@ -51,9 +51,9 @@ struct Output {
 #[derive(Deserialize)]
 struct Measured {
     gait: String,
-    /// Percent.
+    /// Speed, percent.
     speed: f64,
-    /// Time of a cycle by the robot.toml of that run, s.
+    /// Cycle time by the robot.toml of that run, s.
     period_expected: Option<f64>,
     forward: Part,
     left: Part,
@@ -69,8 +69,8 @@ struct Part {
 /// Finds the keys, prints them, and writes the new robot.toml.
 ///
 /// # Errors
-/// Fails for files that are not from `lizard measure`, or from another robot; for ways that tell nothing; if the
-/// output would replace something, or cannot be written.
+/// Fails for files that are not from `lizard measure`, or are from another robot; for gaits that determine no key;
+/// if the output would replace something, or cannot be written.
 pub fn find_keys(args: KeysArgs) -> Result<(), Failure> {
     let before = args.robot.text()?;
     let robot = args.robot.load()?;
@@ -96,7 +96,7 @@ pub fn find_keys(args: KeysArgs) -> Result<(), Failure> {
     json::print_json_or(args.json, &report, || text(&identified, written))
 }
 
-/// Reads the ways of a file.
+/// Reads the measured gaits of a file.
 fn read(path: &Path, robot: &Robot) -> Result<Vec<Way>, Failure> {
     let about = |problem: String| Failure::Input(format!("{}: {problem}", path.display()));
     let output: Output = serde_json::from_str(&files::read_text(path)?).map_err(|error| {
@@ -108,7 +108,7 @@ fn read(path: &Path, robot: &Robot) -> Result<Vec<Way>, Failure> {
     ways.collect::<Result<_, _>>().map_err(about)
 }
 
-/// The way of a measured gait, if it was measured with this robot.toml.
+/// The distances per cycle of a measured gait, if it was measured with this robot.toml.
 fn way(measured: &Measured, robot: &Robot) -> Result<Way, String> {
     let Measured { gait, speed, .. } = measured;
     let pace = speed / 100.0;

@@ -1,4 +1,4 @@
-//! The keys that ways tell, for people and for scripts.
+//! The report of the identified keys, for people and for scripts.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use lizard_identify::{Card, Found, Goodness, Identified, PARTS, Row, Verdict};
 use serde::Serialize;
 
-/// The result under the names of `--json`.
+/// The result, with the names of `--json`.
 #[derive(Serialize)]
 pub(super) struct KeysReport {
     keys: Vec<KeyLine>,
@@ -15,7 +15,7 @@ pub(super) struct KeysReport {
     alike: Vec<(String, String, f64)>,
     fit: FitLine,
     gaits: Vec<GaitLine>,
-    /// The new robot.toml; null if no key is moved.
+    /// The new robot.toml; null if no key has changed.
     written: Option<PathBuf>,
 }
 
@@ -49,7 +49,8 @@ struct FitLine {
     errors_widened: f64,
 }
 
-/// A gait: measured, its errors (null without a decision), by the file, and with the new values; mm, mm, deg.
+/// A gait: measured values, their standard errors (null if the model predicts none), and the predictions by the
+/// file and with the new values; mm, mm, deg.
 #[derive(Serialize)]
 struct GaitLine {
     gait: String,
@@ -128,7 +129,7 @@ impl GaitLine {
     }
 }
 
-/// The result for people.
+/// The result as text for people.
 pub(super) fn text(identified: &Identified, written: Option<&Path>) -> String {
     let mut text = format!(
         "{:<35}{:>10}{:>10}{:>9}\n",
@@ -203,7 +204,7 @@ fn key_line(found: &Found) -> String {
     )
 }
 
-/// How well the model explains the ways.
+/// The part of the text that tells how well the model explains the measurements.
 fn goodness(identified: &Identified) -> String {
     let Goodness {
         figures,

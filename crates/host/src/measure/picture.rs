@@ -1,4 +1,4 @@
-//! A picture to share: the path within a cycle and the ways of each gait, measured beside predicted.
+//! A picture to share: the path within a cycle and the distances per cycle of each gait, measured beside predicted.
 
 use lizard_measure::{GaitReport, PARTS, Report};
 use svg::node::element::Group;
@@ -10,7 +10,7 @@ use crate::shared::ink::{
 use crate::shared::plot::{Axis, Plot, draw_entry};
 
 const WIDTH: f64 = 1000.0;
-/// Height of the title with the key below it, and of a gait, px.
+/// Height of the title with the key below it, and of a gait's row, px.
 const TOP: f64 = 110.0;
 const ROW: f64 = 360.0;
 /// Left edges, width and height of the panels, px.
@@ -19,10 +19,10 @@ const BARS: f64 = 640.0;
 const PATH_WIDTH: f64 = 460.0;
 const BARS_WIDTH: f64 = 330.0;
 const PANEL: f64 = 220.0;
-/// Measured and predicted.
+/// Colours of measured and predicted values.
 const MEASURED: &str = SERVO[0];
 const PREDICTED: &str = GREY;
-/// Standard errors that a bar of error shows to either side.
+/// Half the length of an error bar, in standard errors.
 const ERRORS: f64 = 2.0;
 
 /// Draws a report as SVG.
@@ -41,7 +41,7 @@ pub(super) fn draw(report: &Report) -> String {
     page((WIDTH, TOP + ROW * report.gaits.len() as f64), group)
 }
 
-/// Draws a gait below a height.
+/// Draws a gait with its upper edge at this height.
 fn draw_gait(group: Group, gait: &GaitReport, top: f64) -> Group {
     let name = format!("{}, {} cycles", gait.gait, gait.cycles);
     let group = group.add(text_start(&name, (PATH, top + 35.0), 18.0).set("font-weight", "bold"));
@@ -49,7 +49,7 @@ fn draw_gait(group: Group, gait: &GaitReport, top: f64) -> Group {
     draw_bars(group, gait, top + 55.0)
 }
 
-/// The path within a cycle on the floor: ahead to the right, left upward.
+/// The path within a cycle on the floor. Ahead is to the right, left is upward.
 fn draw_path(group: Group, gait: &GaitReport, top: f64) -> Group {
     let predicted: Vec<(f64, f64)> = gait
         .expected
@@ -70,7 +70,7 @@ fn draw_path(group: Group, gait: &GaitReport, top: f64) -> Group {
         })
     };
     let ([x, right], [y, upper]) = (reach(|point| point.0), reach(|point| point.1));
-    // The same scale both ways, with a margin.
+    // The same scale in both directions, with a margin.
     let scale = ((right - x) / PATH_WIDTH)
         .max((upper - y) / PANEL)
         .max(1e-3)
@@ -105,7 +105,7 @@ fn draw_path(group: Group, gait: &GaitReport, top: f64) -> Group {
         .add(circle(plot.at(end.0, end.1), 5.0, MEASURED))
 }
 
-/// The parts of a cycle's movement as bars.
+/// The components of the motion in a cycle as bars.
 fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
     let parts = gait.parts();
     let ends = parts.iter().flat_map(|part| {
@@ -125,7 +125,7 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
         x: (0.5, 0.5 + parts.len() as f64),
         y: (low - margin, high + margin),
     };
-    // No ticks along the bars: their names stand there.
+    // No ticks below the bars: their names stand there.
     let across = Axis::new(10.0, "");
     let value = Axis::new(step(high - low + 2.0 * margin), "");
     let mut group = plot.draw_grid(group, &across, &value);
@@ -172,7 +172,7 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
     plot.draw_axes(group, &across, &value)
 }
 
-/// A distance of ticks that makes four to ten of them: 1, 2 or 5 times a power of ten.
+/// A distance of ticks that gives four to ten of them: 1, 2 or 5 times a power of ten.
 fn step(range: f64) -> f64 {
     let rough = range / 4.0;
     let power = 10f64.powf(rough.log10().floor());

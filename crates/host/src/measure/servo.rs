@@ -1,4 +1,4 @@
-//! `lizard measure servo`: a servo in the jig.
+//! `lizard measure servo`: measures a servo in the jig.
 
 use std::fmt::{Display, Write as _};
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ use crate::shared::progress::Spinner;
 use crate::shared::{files, json};
 use crate::{Failure, RobotFile};
 
-/// N mm for each kg cm.
+/// N mm per kg cm.
 const N_MM: f64 = 10.0 * GRAVITY;
 
 /// Measure in a film how far and how fast a servo turns, for robot.toml
@@ -76,29 +76,29 @@ fn volts(word: &str) -> Result<f64, String> {
     number(word, [2.0, 9.0], "it is V")
 }
 
-/// The result under the names of `--json`.
+/// The result, with the names of `--json`.
 #[derive(Serialize)]
 struct Report {
     servo: &'static str,
-    /// Pictures in a second.
+    /// Pictures per second.
     pictures: f64,
-    /// Height of the card above the strips, mm: as given, and by its size.
+    /// Height of the card above the strips, mm: as given, and as estimated from its size in the pictures.
     height: f64,
     height_by_size: f64,
     figures: Vec<Key>,
     /// Rates counter-clockwise and clockwise with their errors, deg/s.
     rates: [[f64; 2]; 2],
-    /// Distance of the horn's angles as it comes from either side, deg, and its error.
+    /// Difference between the angles at which the horn stops from either side, deg, and its error.
     sides: [f64; 2],
-    /// The largest small step that moved nothing, us.
+    /// The largest small step that did not move the servo, us.
     still_us: f64,
     is_spin_up_known: bool,
     is_dead_band_known: bool,
     turns_the_other_way: bool,
-    /// Supply for which the figures hold, V, and true if it is measured.
+    /// Supply for which the figures hold, V; true if it was measured.
     volts: f64,
     is_volts_measured: bool,
-    /// The new robot.toml.
+    /// The file of the new robot.toml.
     written: Option<PathBuf>,
     /// Slew limit of the jig's robot.toml, deg/s.
     #[serde(skip)]
@@ -225,7 +225,7 @@ impl Report {
         }
     }
 
-    /// The robot.toml with the keys that the film contradicts, and the supply if it was measured.
+    /// The text of robot.toml with the keys that the film contradicts replaced, and the supply if it was measured.
     fn new_robot(&self, text: &str) -> Result<String, Failure> {
         let refused = |error: &dyn Display| Failure::Input(error.to_string());
         let mut new = figures::written(text, &self.figures).map_err(|error| refused(&error))?;

@@ -1,4 +1,4 @@
-//! `lizard measure slope`: friction by a robot that slides down a tilted board.
+//! `lizard measure slope`: measures friction with a robot that slides down a tilted board.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -39,21 +39,21 @@ pub struct SlopeArgs {
     robot: RobotFile,
 }
 
-/// The result under the names of `--json`.
+/// The result, with the names of `--json`.
 #[derive(Serialize)]
 struct Report {
     films: Vec<Line>,
     figures: Vec<Key>,
 }
 
-/// A film's slide; pairs are a figure and its standard error.
+/// A film's slide. Pairs are a value and its standard error.
 #[derive(Serialize)]
 struct Line {
     film: String,
     is_head_first: bool,
-    /// Tilt at which it begins, deg.
+    /// Tilt at which the slide begins, deg.
     tilt: [f64; 2],
-    /// Coefficients of static friction, and of friction while it slides.
+    /// Coefficients of static and of sliding friction.
     resting: [f64; 2],
     sliding: [f64; 2],
 }
@@ -82,7 +82,7 @@ pub fn measure_slope(args: SlopeArgs) -> Result<(), Failure> {
     json::print_json_or(args.json, &report, || report.text())
 }
 
-/// The mean of figures whose errors are common, as that of the level is; `None` without any.
+/// The mean of figures that share a systematic error, such as that of the level; `None` if there are none.
 fn mean(figures: &[Figure]) -> Option<Figure> {
     let count = figures.len() as f64;
     let mean = |part: &dyn Fn(&Figure) -> f64| figures.iter().map(part).sum::<f64>() / count;

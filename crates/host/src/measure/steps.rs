@@ -1,4 +1,4 @@
-//! `lizard measure steps`: the lines for the console that turn a servo in the jig.
+//! `lizard measure steps`: prints the console lines that turn a servo in the jig.
 
 use std::io::{self, Write};
 use std::thread;
@@ -12,9 +12,9 @@ use crate::{Failure, RobotFile};
 
 /// Time before the first step, s: the console waits for the board meanwhile.
 const LEAD: f64 = 6.0;
-/// Slew limit of the robot in the jig, deg/s: the largest of robot.toml, faster than servos turn.
+/// Slew limit for the jig, deg/s: the largest that robot.toml allows, faster than servos turn.
 const SLEW: f64 = 1000.0;
-/// Distance of the poses that are checked on the way, deg.
+/// Spacing of the poses that are checked along a step, deg.
 const CHECKED: f64 = 1.0;
 
 /// Print the lines that turn a servo for `lizard measure servo`, one each second
@@ -36,7 +36,7 @@ pub struct StepsArgs {
     robot: RobotFile,
 }
 
-/// Reads a servo's name.
+/// Parses a servo's name.
 pub(super) fn servo(word: &str) -> Result<usize, String> {
     let found = NAMES
         .iter()
@@ -47,7 +47,7 @@ pub(super) fn servo(word: &str) -> Result<usize, String> {
 /// Prints the lines.
 ///
 /// # Errors
-/// Fails for a robot whose pulses change slowly, or if nobody reads the lines.
+/// Fails if the robot's slew limit is too low, if its servo cannot make all steps, or if standard output is closed.
 pub fn print_steps(args: StepsArgs) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     check_slew(&robot)?;
@@ -63,7 +63,7 @@ pub fn print_steps(args: StepsArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Checks that the pulse changes faster than a servo turns.
+/// Checks that the slew limit is higher than the rate of a servo.
 pub(super) fn check_slew(robot: &Robot) -> Result<(), Failure> {
     let slew = robot.pace().slew;
     if slew < SLEW {
@@ -76,7 +76,7 @@ pub(super) fn check_slew(robot: &Robot) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The lines, each with the time until the next one, s.
+/// The lines for the console, each with the time until the next one, s.
 fn lines(robot: &Robot, servo: usize) -> Result<Vec<(String, f64)>, Failure> {
     let way = way(robot, servo)?;
     let neutral = |sweep: f64| pose(robot, servo, sweep);
@@ -109,7 +109,7 @@ fn pose(robot: &Robot, servo: usize, sweep: f64) -> String {
     format!("pose {a} {b} {c} {d}")
 }
 
-/// The side of neutral to which the linkage lets a servo turn by all steps: 1 counter-clockwise, -1 clockwise.
+/// The direction from neutral in which the linkage allows all steps of a servo: 1 counter-clockwise, -1 clockwise.
 pub(super) fn way(robot: &Robot, servo: usize) -> Result<f64, Failure> {
     let is_free = |way: &f64| {
         orders(*way).iter().all(|order| {

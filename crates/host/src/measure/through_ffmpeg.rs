@@ -1,8 +1,8 @@
-//! The pictures of a film file, by the programs ffmpeg and ffprobe.
+//! Reading the pictures of a film file through the programs ffmpeg and ffprobe.
 //!
-//! Decoders of films are large, and everybody who has films has one. ffprobe tells the time of each picture, because
-//! a phone's pictures are not evenly spaced, and ffmpeg sends the pictures as YUV4MPEG2: a line
-//! with the size, then a line and the grey pixels of each.
+//! Film decoders are large, and everybody who makes films has one. ffprobe gives the time of each picture, because
+//! a phone's pictures are not evenly spaced. ffmpeg sends the pictures as YUV4MPEG2: a line with the size, then for
+//! each picture a line and its grey pixels.
 
 use std::io::{BufRead, BufReader, ErrorKind, Read};
 use std::path::Path;
@@ -12,7 +12,7 @@ use lizard_film::Picture;
 
 use crate::Failure;
 
-/// Arguments of ffmpeg around the file's name: one grey picture for each of the film.
+/// Arguments of ffmpeg after the file's name: one grey picture for each one of the film.
 const PICTURES: &str = "-fps_mode passthrough -f yuv4mpegpipe -pix_fmt gray -strict -1 -";
 /// Arguments of ffprobe before the file's name: the times of the pictures.
 const TIMES: &str =
@@ -23,7 +23,7 @@ const LARGEST: usize = 10_000;
 /// Calls a function for each picture of a film with its time, s.
 ///
 /// # Errors
-/// Fails without the programs, for a film that they cannot read, or if the function fails.
+/// Fails if a program is missing, for a film that they cannot read, or if the function fails.
 pub(super) fn each(
     film: &Path,
     rate: Option<f64>,
@@ -76,7 +76,7 @@ pub(super) fn each(
             })
             .or_else(|end: Option<Failure>| end.map_or(Ok(()), Err)),
     };
-    // It may still be sending pictures that are not read any more.
+    // ffmpeg may still be sending pictures that are no longer read.
     drop(stream);
     let _ = ffmpeg.kill();
     let _ = ffmpeg.wait();
@@ -91,7 +91,7 @@ fn times(film: &Path) -> Result<Vec<f64>, Failure> {
         .output()
         .map_err(|error| missing("ffprobe", &error))?;
     let text = String::from_utf8_lossy(&output.stdout);
-    // A picture with more to tell is followed by a comma and an empty line.
+    // A picture with side data is followed by a comma and an empty line.
     let lines = text.lines().map(|line| line.trim_end_matches(',').trim());
     let lines = lines.filter(|line| !line.is_empty());
     let times: Option<Vec<f64>> = lines.map(|line| line.parse().ok()).collect();

@@ -71,8 +71,9 @@ enum Subject {
 
 /// Computes the pose and prints it.
 ///
-/// # Errors Fails for a wrong robot.toml, a pose that the robot cannot have, an invalid line of the
-/// stream, an output that cannot be written.
+/// # Errors
+/// Fails for a wrong robot.toml, a pose that the robot cannot have, an invalid line of the stream, an output that
+/// cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let ends = [&args.head, &args.tail].map(|end| end.as_ref().map(|p| Vector::new(p[0], p[1])));

@@ -9,8 +9,8 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 use crate::paper::poses::Timed;
 use crate::shared::number::tidy;
 
-/// One object of `lizard pose --json`. Everything that a pose without a
-/// solution lacks is null; seconds are there only where the stream has them.
+/// One object of `lizard pose --json`. Fields that need a solution are null without one; `seconds` is present only
+/// if the stream has it.
 #[derive(Default, serde::Serialize)]
 pub struct PoseLine {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -49,7 +49,7 @@ struct Leg {
     coupler: f64,
 }
 
-/// All margins by their names.
+/// All margins by name.
 struct Sines(Margins);
 
 impl Serialize for Sines {
@@ -63,7 +63,7 @@ impl Serialize for Sines {
 }
 
 impl PoseLine {
-    /// The line of a pose, solved or not.
+    /// The line of a pose, with or without a solution.
     pub fn new(robot: &Robot, seconds: Option<f64>, solved: &Result<Solution, Infeasible>) -> Self {
         let s = match solved {
             Ok(solution) => solution,
@@ -106,7 +106,7 @@ impl PoseLine {
     }
 }
 
-/// The heading of [`row`], in the same columns.
+/// The heading of the table, for the columns of [`row`].
 pub fn heading(has_time: bool) -> String {
     let seconds = if has_time { " seconds |" } else { "" };
     format!(
@@ -127,7 +127,7 @@ pub fn heading(has_time: bool) -> String {
     )
 }
 
-/// A solved pose in one line of a table.
+/// A pose in one line of a table.
 pub fn row(robot: &Robot, timed: &Timed, solved: &Result<Solution, Infeasible>) -> String {
     let angles = <[f64; 4]>::from(timed.pose);
     let mut line = String::with_capacity(192);
@@ -169,7 +169,7 @@ pub fn row(robot: &Robot, timed: &Timed, solved: &Result<Solution, Infeasible>) 
     line
 }
 
-/// A solved pose as a page.
+/// A pose as a page of text.
 pub fn page(robot: &Robot, pose: &Pose, solved: &Result<Solution, Infeasible>) -> String {
     let limits = robot.limits();
     let milli = |value: f64| tidy(value, 3);

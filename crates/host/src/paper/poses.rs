@@ -43,10 +43,10 @@ const SERVO_ORDER: [Column; 4] = [
     Column::Angle(3),
 ];
 
-/// Longer lines are not poses, and are not read to their end.
+/// Largest length of a line, bytes. Longer lines are not poses, and are not read to their end.
 const MAX_LINE_BYTES: u64 = 1024;
 
-/// A line of the stream.
+/// A pose of the stream, with its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timed {
     /// Time, s, if the stream has such a column.
@@ -55,17 +55,16 @@ pub struct Timed {
     pub pose: Pose,
 }
 
-/// Poses of a CSV text. Its first line may name the columns, in any order;
-/// without such a header they are A1, A2, A3, A4. Blank lines are skipped, lines
-/// end in LF or CRLF, names and numbers may stand in double quotes, a byte order
-/// mark is passed over.
+/// Iterator over the poses of a CSV text. Its first line may name the columns, in any order; without such a header
+/// they are A1, A2, A3, A4. Blank lines are skipped, lines end in LF or CRLF, names and numbers may stand in double
+/// quotes, a byte order mark is ignored.
 pub struct Poses<R> {
     input: R,
     line: Vec<u8>,
     number: usize,
     /// The meaning of each field of a line.
     columns: Vec<Column>,
-    /// True while the first line read still needs an answer.
+    /// True until the first line, read while looking for a header, has been returned as a pose.
     is_unanswered: bool,
 }
 
@@ -90,7 +89,7 @@ impl<R: BufRead> Poses<R> {
         }
         let text = poses.text()?;
         let names: Vec<&str> = text.split(',').map(trim_quotes).collect();
-        // A header has no numbers; the first line of bare poses has.
+        // A header contains no number; a pose does.
         if names.iter().any(|name| name.parse::<f64>().is_ok()) {
             poses.is_unanswered = true;
             return Ok(poses);
@@ -120,12 +119,12 @@ impl<R: BufRead> Poses<R> {
         Ok(poses)
     }
 
-    /// True if the lines have a time.
+    /// True if the lines have a column for the time.
     pub fn has_time(&self) -> bool {
         self.columns.contains(&Column::Seconds)
     }
 
-    /// Reads the next line that is not blank; false at the end.
+    /// Reads the next line that is not blank; returns false at the end.
     fn advance(&mut self) -> Result<bool, Failure> {
         loop {
             self.line.clear();
@@ -230,7 +229,7 @@ impl<R: BufRead> Iterator for Poses<R> {
     }
 }
 
-/// A field without blanks and without quotes around it.
+/// The text of a field without surrounding blanks and quotes.
 fn trim_quotes(field: &str) -> &str {
     let field = field.trim();
     field

@@ -1,5 +1,5 @@
-//! `lizard pose --show singularities`: K and K*, their factors, and the turns to the nearest
-//! singular pose.
+//! `lizard pose --show singularities`: the matrices K and K*, the factors of det K*, and the turns of the servos to
+//! the nearest singular poses.
 
 use lizard_kinematics::{Blocks, End, FiveBar, SingularPose, Singularity, Solution, wrap};
 use lizard_robot::Robot;
@@ -41,7 +41,7 @@ impl Matrix {
         Self {
             rows: LOOPS,
             columns,
-            // Without negative zeros.
+            // Adding 0.0 removes negative zeros.
             values: values
                 .map(|row| row.map(|value| value + 0.0).to_vec())
                 .into(),
@@ -56,7 +56,7 @@ impl Matrix {
         for (name, row) in self.rows.iter().zip(&self.values) {
             text += &format!("\n  {name:7}");
             for value in row {
-                // Rounding errors are printed as a point.
+                // Values of the size of rounding errors are printed as a point.
                 text += &match value.abs() < 5e-7 {
                     true => format!(" {:>9}", "."),
                     false => format!(" {:9.2}", tidy(*value, 2)),
@@ -69,9 +69,9 @@ impl Matrix {
 
 #[derive(Serialize)]
 struct Report {
-    /// Derivatives by the servo angles, mm per radian.
+    /// Derivatives with respect to the servo angles, mm per radian.
     k: Matrix,
-    /// Derivatives by the passive joints: mm per radian, and by s mm per mm.
+    /// Derivatives with respect to the passive joints: mm per radian, and for s mm per mm.
     k_star: Matrix,
     determinant: f64,
     factored: f64,
@@ -88,7 +88,7 @@ struct Factors {
     right: f64,
 }
 
-/// The nearest pose at which something is singular.
+/// The nearest singular pose of one kind.
 #[derive(Serialize)]
 struct Nearest {
     what: String,
@@ -148,7 +148,7 @@ fn report(robot: &Robot, solution: &Solution) -> Report {
         }
     }
     for (servo, angle) in <[f64; 4]>::from(solution.pose).into_iter().enumerate() {
-        // Change points at 0 and 180 degrees.
+        // A leg has change points at 0 and 180 degrees.
         let turn_by = 180.0 * (angle / 180.0).round() - angle;
         let mut turn = [0.0; 4];
         turn[servo] = turn_by;
@@ -178,8 +178,8 @@ fn report(robot: &Robot, solution: &Solution) -> Report {
     }
 }
 
-/// The nearest singular crank angles of one kind, by scanning the curves for
-/// every left crank angle and narrowing the step around the best.
+/// The nearest singular crank angles of one kind, with their distance in degrees. Scans the singularity curves over
+/// all left crank angles, then refines the step around the best one.
 pub fn nearest_of(
     bars: &FiveBar,
     kind: Singularity,

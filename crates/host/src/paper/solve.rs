@@ -1,4 +1,4 @@
-//! `lizard pose`: the forward solution of everything, by Algorithm 1.
+//! `lizard pose`: the forward solution of the whole robot, by Algorithm 1 of the paper.
 
 use std::io::{self, BufRead, IsTerminal, Write};
 use std::panic::resume_unwind;
@@ -16,10 +16,10 @@ use crate::paper::poses::{Poses, Timed};
 /// Number of poses that are solved together, which bounds the memory.
 const BATCH: usize = 8192;
 
-/// Blocks of lines, a sixteenth of a batch each, that may wait to be written.
+/// Number of blocks of lines, each a sixteenth of a batch, that may wait to be written.
 const AHEAD: usize = 32;
 
-/// Solves a pose, or those of standard input if there is none.
+/// Solves a pose and prints it; without a pose, solves those of standard input.
 ///
 /// # Errors
 /// Fails for an invalid pose or line of the stream, or an output that cannot be written.
@@ -34,7 +34,7 @@ pub fn print(robot: &Robot, pose: Option<&Pose>, json: bool) -> Result<(), Failu
     }
 }
 
-/// One pose, as a page or an object.
+/// The output for one pose, as a page or a JSON object.
 fn solve_one(robot: &Robot, pose: &Pose, json: bool) -> Result<Vec<u8>, Failure> {
     let solved = robot.lizard().solve(pose);
     if !json {
@@ -45,9 +45,8 @@ fn solve_one(robot: &Robot, pose: &Pose, json: bool) -> Result<Vec<u8>, Failure>
     Ok(line)
 }
 
-/// Solves batches on all cores and writes them in order, one batch while the
-/// next is solved. Poses before a malformed line are still answered, each in a
-/// whole line.
+/// Solves batches on all cores and writes them in order; one batch is written while the next is solved. Poses
+/// before a malformed line still get their complete lines.
 fn stream(robot: &Robot, json: bool) -> Result<(), Failure> {
     let mut poses = Poses::new(io::stdin().lock())?;
     let (solved, to_write) = mpsc::sync_channel::<Vec<u8>>(AHEAD);
@@ -74,8 +73,8 @@ fn write(lines: mpsc::Receiver<Vec<u8>>, heading: Option<String>) -> Result<(), 
     Ok(out.flush()?)
 }
 
-/// Solves batch after batch and sends their lines on. Ends early and silently if the writer has
-/// stopped, which reports the reason.
+/// Solves batch after batch and sends their lines to the writer. Ends early without an error if the writer has
+/// stopped; the writer reports the reason.
 fn solve_all(
     robot: &Robot,
     json: bool,

@@ -11,7 +11,8 @@ use crate::shared::pose_args::Quantity;
 /// Longest step of the finite differences for the comparison, s.
 const STEP: f64 = 2e-4;
 
-/// Largest turn of a servo in a step, deg: beyond it the differences belong to another pose.
+/// Largest turn of a servo in a step of the finite differences, deg. With a larger one the differences would belong
+/// to other poses.
 const SWEEP: f64 = 0.04;
 
 #[derive(clap::Args)]
@@ -43,7 +44,7 @@ pub struct DriveArgs {
     alpha5: f64,
 }
 
-/// A row of the result.
+/// A joint or coordinate in the result.
 #[derive(Clone, Serialize)]
 struct Row {
     joint: &'static str,
@@ -51,8 +52,7 @@ struct Row {
     value: f64,
     rate: f64,
     acceleration: f64,
-    /// Finite difference minus closed form; null where the neighbours of the
-    /// pose have no position.
+    /// Finite difference minus closed form; null if a neighbouring pose has no solution.
     rate_deviation: Option<f64>,
     acceleration_deviation: Option<f64>,
 }
@@ -66,10 +66,10 @@ impl From<DriveArgs> for Drive {
     }
 }
 
-/// Prints how fast each passive joint moves.
+/// Prints the rate and the acceleration of each passive joint.
 ///
 /// # Errors
-/// Fails for a pose in which rates have no meaning, or an output that cannot be written.
+/// Fails for a pose in which rates are not defined, or an output that cannot be written.
 pub fn print(
     lizard: &Lizard,
     solution: &Solution,
@@ -113,7 +113,7 @@ fn text(rows: &[Row]) -> String {
     page
 }
 
-/// Joint, unit, value.
+/// Name, unit and value of each joint and coordinate.
 fn values(s: &Solution) -> [(&'static str, &'static str, f64); 12] {
     let (head, tail) = (s.head_point(), s.tail_point());
     [
@@ -179,7 +179,7 @@ fn rows(lizard: &Lizard, solution: &Solution, drive: &Drive) -> Vec<Row> {
                     let change = all[i].2 - value;
                     if unit == "deg" { wrap(change) } else { change }
                 });
-                // Five points: the error is of the fourth order in the step.
+                // Five-point differences: the error is of the fourth order in the step.
                 (
                     (a - 8.0 * b + 8.0 * c - d) / (12.0 * step),
                     (16.0 * (b + c) - a - d) / (12.0 * step * step),
@@ -188,7 +188,7 @@ fn rows(lizard: &Lizard, solution: &Solution, drive: &Drive) -> Vec<Row> {
             Row {
                 joint,
                 unit,
-                // Without negative zeros.
+                // Adding 0.0 removes negative zeros.
                 value: value + 0.0,
                 rate: rate + 0.0,
                 acceleration: acceleration + 0.0,

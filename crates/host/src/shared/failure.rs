@@ -2,7 +2,7 @@
 
 use std::io;
 
-/// The reason why a subcommand ended without its result.
+/// The reason why a subcommand ended without a result.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
     /// An argument or a line of input is wrong.
@@ -11,7 +11,7 @@ pub enum Failure {
     /// robot.toml is missing or wrong.
     #[error("{0}")]
     Robot(#[from] lizard_robot::Error),
-    /// The command is right, but could not be carried out.
+    /// The command is valid, but could not be carried out.
     #[error("{0}")]
     Impossible(String),
     /// Standard input, standard output or the terminal failed. Errors of a file or a port are
@@ -29,8 +29,7 @@ impl Failure {
         }
     }
 
-    /// True if the reader of our output went away, as `lizard ... | head` does;
-    /// that is not a fault.
+    /// True if the reader of our output has closed it, as in `lizard ... | head`; that is not a fault.
     pub fn is_silent(&self) -> bool {
         matches!(self, Self::Io(error) if error.kind() == io::ErrorKind::BrokenPipe)
     }
@@ -43,7 +42,7 @@ impl From<lizard_kinematics::Infeasible> for Failure {
 }
 
 impl From<serde_json::Error> for Failure {
-    /// Our own values always serialise, so this is a write that failed.
+    /// Treats the error as a failed write, since our own values always serialise.
     fn from(error: serde_json::Error) -> Self {
         Self::Io(error.into())
     }

@@ -1,12 +1,12 @@
-//! The files that a command reads and writes: all of them go through here.
+//! Reading and writing the files of all commands.
 //!
-//! A program that is ended while it writes leaves half a file, and half an image or
-//! half a calibration is worse than none. So the bytes go into a file without a name, or a
-//! temporary one where the system has no such files, which takes its name at the end.
+//! A program that is ended while it writes leaves half a file, and half an image or half a calibration is worse
+//! than none. So the bytes are written to a file without a name, or to a temporary one if the system has no
+//! nameless files, and this file gets its final name at the end.
 //!
-//! A file may replace only an ordinary file. If it replaced a device such as /dev/null,
-//! every program of the machine would get it. And no file replaces a robot's description, or
-//! what the same command has read: it is somebody's work, and a wrong name is typed easily.
+//! An output replaces only an ordinary file. If it replaced a device such as /dev/null, this would affect every
+//! program of the machine. And an output replaces neither a robot's description nor an input of the same command:
+//! it is somebody's work, and a wrong name is typed easily.
 
 use std::fs::{self, File, Permissions};
 use std::io::{self, ErrorKind, Read, Write};
@@ -25,10 +25,10 @@ pub fn note_input(path: &Path) -> &Path {
     path
 }
 
-/// The text of an input.
+/// Reads the text of an input.
 ///
 /// # Errors
-/// Fails if it cannot be read, is not text, or does not end within 256 MiB, as a device may not.
+/// Fails if the file cannot be read, is not text, or does not end within 256 MiB, as a device may not.
 pub fn read_text(path: &Path) -> Result<String, Failure> {
     const MAX_BYTES: u64 = 256 << 20;
     let mut text = String::new();
@@ -62,8 +62,7 @@ pub fn check_replaceable(path: &Path) -> Result<(), Failure> {
     )))
 }
 
-/// True for a file that is named robot.toml or has the table of a robot's lengths, even if
-/// the rest of it is wrong.
+/// True for a file that is named robot.toml or has the table `[links]` of a robot, even if the rest of it is wrong.
 fn is_robot(path: &Path) -> bool {
     if !path.is_file() {
         return false;
@@ -78,18 +77,17 @@ fn is_robot(path: &Path) -> bool {
     end.ends_with("robot.toml") || fs::read(end).is_ok_and(has_lengths)
 }
 
-/// Writes a file whole or not at all, and makes the folders it needs. A file that is there is
-/// replaced, also where a link leads to it, and keeps its permissions. A stream, such as
-/// /dev/stdout or a named pipe, gets the bytes.
+/// Writes a file completely or not at all, and creates the folders it needs. An existing file is replaced, also
+/// through a symbolic link, and keeps its permissions. A stream, such as /dev/stdout or a named pipe, gets the
+/// bytes.
 ///
 /// # Errors
-/// Fails if the folder cannot be made or written to; or there is something at this path that is no
-/// ordinary file, such as a device or a folder: it would be replaced by a file. Or the file is an
-/// input or a robot ([`check_replaceable`]).
+/// Fails if the folder cannot be created or written to; if something at this path is neither an ordinary file nor a
+/// stream, such as a folder; or if the file is an input or a robot ([`check_replaceable`]).
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     check_replaceable(path)?;
     let outcome = if is_stream(path) {
-        // Opened without being created or truncated.
+        // Opens the stream without creating or truncating a file.
         File::options()
             .write(true)
             .open(path)
@@ -100,7 +98,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     outcome.map_err(|error| write_failure(path, &error))
 }
 
-/// The message for a path that cannot be written.
+/// The failure for a path that cannot be written.
 pub fn write_failure(path: &Path, error: &io::Error) -> Failure {
     let reason = error.to_string();
     // tempfile adds the name of the temporary file, which means nothing to a user.
@@ -130,7 +128,7 @@ fn is_stream(_: &Path) -> bool {
     false
 }
 
-/// Follows the links of a path; returns the file at the end and its permissions, if it exists.
+/// Follows the symbolic links of a path. Returns the file at the end, and its permissions if it exists.
 fn resolve(path: &Path) -> io::Result<(PathBuf, Option<Permissions>)> {
     match path.metadata() {
         Ok(there) if there.is_file() => Ok((path.canonicalize()?, Some(there.permissions()))),
@@ -173,24 +171,24 @@ fn persist(path: &Path, bytes: &[u8]) -> io::Result<()> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // The permissions of any new file: the user's umask restricts them.
+        // The permissions of any new file; the user's umask restricts them.
         builder.permissions(Permissions::from_mode(0o666));
     }
-    // In the same folder: a file moves into its place at once only there.
+    // In the same folder, because a file can be moved atomically only within a file system.
     let mut file = builder.tempfile_in(folder)?;
     fill(file.as_file_mut())?;
     file.persist(path)?;
     Ok(())
 }
 
-/// A file in this folder that has no name yet, and is gone if the program is killed; `None` if
-/// the file system has no such files.
+/// Creates a file in this folder that has no name yet, and vanishes if the program is killed; `None` if the file
+/// system has no such files.
 #[cfg(target_os = "linux")]
 fn create_nameless(folder: &Path) -> Option<File> {
     use rustix::fs::{Mode, OFlags, open};
     let flags = OFlags::TMPFILE | OFlags::WRONLY | OFlags::CLOEXEC;
     let file = open(folder, flags, Mode::from_raw_mode(0o666)).ok()?;
-    // Only through this folder can the file be given a name.
+    // The file can be given a name only through this folder.
     Path::new("/proc/self/fd").is_dir().then(|| file.into())
 }
 
@@ -288,7 +286,7 @@ mod tests {
     #[cfg(unix)]
     fn a_stream_gets_the_bytes_and_stays() {
         let folder = tempfile::tempdir().expect("a folder");
-        // A link, so that a mistake here would not harm the machine.
+        // A link, so that a bug here would not harm the machine.
         let device = folder.path().join("device");
         std::os::unix::fs::symlink("/dev/null", &device).expect("a link");
         write(&device, b"<svg/>").expect("it takes everything");

@@ -1,33 +1,33 @@
-//! Colours and strokes that every drawing shares.
+//! Colours and basic shapes of all drawings.
 
 use svg::node::Value;
 use svg::node::element::{Circle, Group, Line, Polyline, Rectangle, Text};
 use svg::{Document, Node};
 
-/// Servos A1 to A4, and their legs: three of Okabe and Ito's colours and a purple
-/// of Tol's, which the colour-blind can tell apart too.
+/// Colours of servos A1 to A4 and their legs: three of Okabe and Ito's colours and a purple of Tol's, which
+/// colour-blind people can tell apart, too.
 pub const SERVO: [&str; 4] = ["#0072b2", "#d55e00", "#009e73", "#aa4499"];
 /// Positions of the servos on the robot.
 pub const PLACES: [&str; 4] = ["front left", "front right", "back right", "back left"];
-/// Text and axes.
+/// The colour of text and axes.
 pub const DARK: &str = "#222222";
 /// The colour of secondary text.
 pub const GREY: &str = "#666666";
 /// The colour of grid lines.
 pub const GRID: &str = "#dddddd";
-/// The wires of a servo: signal, +5 V, ground. Grey, they are light, middling and dark.
+/// The signal wire of a servo. In grey, signal, +5 V and ground are light, medium and dark.
 pub const ORANGE: &str = "#e8930c";
-/// The +5 V wire, see [`ORANGE`].
+/// The +5 V wire; see [`ORANGE`].
 pub const RED: &str = "#e5383b";
-/// The ground wire, see [`ORANGE`].
+/// The ground wire; see [`ORANGE`].
 pub const BROWN: &str = "#3d2210";
-/// Backgrounds of panels.
+/// The colour of the backgrounds of panels.
 pub const PANEL: &str = "#f7f7f7";
 
-/// The fonts, the likeliest first.
+/// The fonts, in order of preference.
 const FONTS: &str = "Helvetica, Arial, 'DejaVu Sans', sans-serif";
 
-/// The part of a text that is at its point.
+/// The part of a text that is placed at its point.
 #[derive(Clone, Copy)]
 pub enum Anchor {
     /// The text begins there.
@@ -59,7 +59,7 @@ pub fn text_start(content: &str, at: (f64, f64), size: f64) -> Text {
     text(content, at, size, DARK, Anchor::Start)
 }
 
-/// Dark text about a point.
+/// Dark text centred on a point.
 pub fn text_middle(content: &str, at: (f64, f64), size: f64) -> Text {
     text(content, at, size, DARK, Anchor::Middle)
 }
@@ -76,7 +76,7 @@ pub fn title(group: Group, left: f64, heading: &str, note: &str) -> Group {
         .add(text(note, (left, 66.0), 15.0, GREY, Anchor::Start))
 }
 
-/// The text of a picture on a white page.
+/// The SVG text of a picture on a white page.
 pub fn page(size: (f64, f64), group: Group) -> String {
     Document::new()
         .set("viewBox", (0.0, 0.0, size.0, size.1))

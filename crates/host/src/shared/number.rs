@@ -1,14 +1,13 @@
-//! Numbers for people.
+//! Rounding and formatting of numbers for people.
 
-/// A value rounded to some decimals, as it will be printed, without the sign of
-/// a zero: no "-0.000".
+/// A value rounded to some decimals for printing. Zero has no sign: no "-0.000".
 pub fn tidy(value: f64, decimals: i32) -> f64 {
     let scale = 10f64.powi(decimals);
     // Adding a positive zero turns a negative one positive.
     (value * scale).round() / scale + 0.0
 }
 
-/// A number with blanks between its thousands.
+/// A number with blanks between groups of three digits.
 pub fn grouped(value: f64, decimals: usize) -> String {
     let plain = format!("{value:.decimals$}");
     let (integer, fraction) = plain.split_at(plain.find('.').unwrap_or(plain.len()));

@@ -1,8 +1,8 @@
 //! Makes text from files and boards safe for a terminal.
 //!
-//! A terminal obeys escape characters: one in the name of a robot or in a recorded line
-//! moves the cursor, changes the window's title or hides what follows. So text from a
-//! file or a board is shown with such characters spelled out.
+//! A terminal executes escape sequences: one in the name of a robot or in a recorded line moves the cursor, changes
+//! the window's title or hides the text after it. So text from a file or a board is shown with control characters
+//! spelled out.
 
 /// The text with every control character as an escape of Rust, such as `\u{1b}`.
 pub fn plain(text: &str) -> String {

@@ -1,4 +1,4 @@
-//! Axes, banded maps and their scales: what every chart is made of.
+//! Parts of all charts: axes, maps in bands of colour, and colour scales.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -9,8 +9,8 @@ use crate::shared::ink::{
     DARK, GRID, curve, edged, line, rectangle, text_end, text_middle, text_start,
 };
 
-/// Viridis in ten bands: even steps in lightness, so that it reads in grey and
-/// for every kind of colour vision.
+/// Viridis in ten bands: even steps in lightness, so that it is legible in grey and for every kind of colour
+/// vision.
 pub const VIRIDIS: &[&str] = &[
     "#440154", "#482878", "#3e4989", "#31688e", "#26828e", "#1f9e89", "#35b779", "#6ece58",
     "#b5de2b", "#fde725",
@@ -37,9 +37,9 @@ pub struct Plot {
     pub y: (f64, f64),
 }
 
-/// One axis' ticks and name.
+/// Ticks and name of an axis.
 pub struct Axis<'a> {
-    /// Distance of ticks.
+    /// Distance between ticks.
     pub step: f64,
     /// Name and unit.
     pub name: &'a str,
@@ -53,7 +53,7 @@ impl<'a> Axis<'a> {
 }
 
 impl Plot {
-    /// The place of a point on the page.
+    /// The position of a point on the page.
     pub fn at(&self, x: f64, y: f64) -> (f64, f64) {
         (
             self.corner.0 + self.size.0 * (x - self.x.0) / (self.x.1 - self.x.0),
@@ -66,12 +66,12 @@ impl Plot {
         self.size.0 / (self.x.1 - self.x.0)
     }
 
-    /// The right and lower edges.
+    /// The lower right corner.
     fn end(&self) -> (f64, f64) {
         (self.corner.0 + self.size.0, self.corner.1 + self.size.1)
     }
 
-    /// A grid in the background.
+    /// Adds a grid in the background.
     pub fn draw_grid(&self, mut group: Group, x: &Axis, y: &Axis) -> Group {
         for value in ticks(self.x, x.step) {
             let px = self.at(value, 0.0).0;
@@ -84,7 +84,7 @@ impl Plot {
         group
     }
 
-    /// Frame, ticks, numbers and names.
+    /// Adds frame, ticks, numbers and names.
     pub fn draw_axes(&self, mut group: Group, x: &Axis, y: &Axis) -> Group {
         let (right, bottom) = self.end();
         group = group.add(edged(rectangle(self.corner, self.size, "none"), DARK, 1.0));
@@ -123,8 +123,8 @@ impl Plot {
             ))
     }
 
-    /// A map in bands of colour, one path for each. Equal neighbours in a row
-    /// become one rectangle of it.
+    /// Adds a map in bands of colour, with one path for each colour. Equal neighbours in a row become one rectangle
+    /// of the path.
     pub fn draw_map(
         &self,
         mut group: Group,
@@ -190,7 +190,7 @@ fn number(value: f64, step: f64) -> String {
     format!("{:.1$}", value + 0.0, digits as usize)
 }
 
-/// Colours for a quantity.
+/// A scale of colours for a quantity.
 pub struct Scale {
     /// Value at the lower end of the first band.
     pub least: f64,
@@ -201,10 +201,10 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// The colour of a value; what lies outside gets the nearest band.
+    /// The colour of a value; a value outside the range gets the nearest band.
     pub fn colour(&self, value: f64) -> &'static str {
         let share = (value - self.least) / (self.most - self.least);
-        // A value on a limit belongs to the band above it, whatever its rounding.
+        // A value on a limit belongs to the band above it, despite rounding.
         let band = (share * self.colours.len() as f64 + 1e-9).max(0.0) as usize;
         self.colours[band.min(self.colours.len() - 1)]
     }
@@ -239,7 +239,7 @@ impl Scale {
     }
 }
 
-/// A short line and its meaning.
+/// An entry of a legend: a short line and its meaning.
 pub fn draw_entry(group: Group, at: (f64, f64), colour: &str, dashes: &str, words: &str) -> Group {
     group
         .add(line(at, (at.0 + 34.0, at.1), colour, 3.0).set("stroke-dasharray", dashes))

@@ -1,5 +1,5 @@
-//! The options that give a pose, and the bounds of the quantities on the command line: beyond
-//! them a double has no digits left for the result.
+//! The options that give a pose, and the bounds of quantities on the command line. Beyond these bounds a double has
+//! too few digits for the result.
 
 use std::fmt;
 
@@ -39,7 +39,7 @@ impl Quantity {
         move |text| self.parse(text).map_err(|fault| format!("it {fault}"))
     }
 
-    /// A number within the bounds.
+    /// Parses a number within the bounds.
     ///
     /// # Errors
     /// Fails if the text is not a number, or one out of bounds; NaN and infinity are out of bounds.
@@ -53,7 +53,7 @@ impl Quantity {
     }
 }
 
-/// The reason why a typed number is refused; the text continues a sentence about it.
+/// The reason why a typed number is refused. Its text continues a sentence about the number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NumberFault {
     /// The text is not a number.

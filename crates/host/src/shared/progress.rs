@@ -1,4 +1,4 @@
-//! Progress bars on standard error; they hide themselves if that is not a terminal.
+//! Progress bars on standard error, which are hidden if that is not a terminal.
 
 use std::time::Duration;
 
@@ -7,17 +7,17 @@ use indicatif::{ProgressBar, ProgressStyle};
 /// A bar of this length, drawn by a template of indicatif.
 ///
 /// # Panics
-/// The template is not well formed.
+/// Panics if the template is not well formed.
 pub fn bar(length: usize, template: &str) -> ProgressBar {
     let style = ProgressStyle::with_template(template).expect("the template is well formed");
     ProgressBar::new(length as u64).with_style(style)
 }
 
-/// The time that a computation without steps has taken so far; cleared when it is dropped.
+/// A display of the time that a computation without steps has taken so far; removed when dropped.
 pub struct Spinner(ProgressBar);
 
 impl Spinner {
-    /// Begins to show the time, after these words.
+    /// Starts to show the time, after these words.
     pub fn new(words: &'static str) -> Self {
         let spinner = bar(0, "{spinner} {msg}, {elapsed}").with_message(words);
         spinner.enable_steady_tick(Duration::from_millis(100));

@@ -59,7 +59,7 @@ impl RobotFile {
     /// The text of the robot file.
     ///
     /// # Errors
-    /// Fails if it is missing or no text.
+    /// Fails if the file is missing or is not text.
     pub(crate) fn text(&self) -> Result<String, Failure> {
         if let Some(text) = &self.text {
             return Ok(text.clone());
@@ -129,7 +129,7 @@ impl RobotFile {
 enum Found {
     /// A file at this path.
     File(PathBuf),
-    /// This text of the program.
+    /// A robot inside the program, by its text.
     BuiltIn(&'static str),
 }
 

@@ -18,7 +18,7 @@ use serde_json::Value;
 use crate::shared::json;
 use crate::{Failure, RobotFile};
 
-/// The largest number of parts; no queue has a use for more.
+/// The largest number of parts, more than any job queue needs.
 const MAX_PARTS: u32 = 1_000_000;
 
 /// One of several parts of a computation.
@@ -116,12 +116,12 @@ pub struct Spread {
     merged: Option<BTreeMap<usize, Value>>,
 }
 
-/// A command that can be spread. Its serialized form contains all options but the robot.
+/// A command that can be spread. Its serialized form contains all options except the robot.
 pub trait Spreads: Serialize + DeserializeOwned {
     /// The command's name.
     const COMMAND: &'static str;
 
-    /// The command's robot and its part.
+    /// The command's robot and `--part`.
     fn spread(&mut self) -> &mut Spread;
 }
 
@@ -154,10 +154,10 @@ impl Spread {
         self.part
     }
 
-    /// Returns the results of all parts in order, in a merge.
+    /// Returns the results of all parts in order; `None` if this is not a merge.
     ///
     /// # Errors
-    /// Fails if they belong to another computation.
+    /// Fails if the parts belong to another computation.
     pub fn read<T: DeserializeOwned>(&self, count: usize) -> Result<Option<Vec<T>>, Failure> {
         let Some(merged) = &self.merged else {
             return Ok(None);

@@ -1,11 +1,10 @@
 //! Suggestions for a mistyped name.
 
-/// The similarity of two words, 0 to 1, from which one counts as a mistyped form of the other;
-/// the same value as clap's for commands and options.
+/// Smallest similarity of two words, from 0 to 1, at which one counts as a mistyped form of the other; the same
+/// value as clap's for commands and options.
 const MIN_SIMILARITY: f64 = 0.7;
 
-/// The end of a sentence: `; did you mean NAME?` with the name most like the word; nothing if
-/// none is like it.
+/// The end of a sentence, `; did you mean NAME?`, with the name most like the word; empty if none is similar.
 pub fn did_you_mean<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> String {
     let like = names
         .into_iter()

@@ -1,4 +1,4 @@
-//! The angles that the firmware's pulses ask for while a gait walks, for an engine to follow.
+//! The servo angles that the firmware's pulses command during a gait, for a physics engine to follow.
 
 use std::path::Path;
 
@@ -12,11 +12,10 @@ use crate::simulate::sim::frame_log::FrameLog;
 use crate::simulate::twin;
 use crate::{Failure, RobotFile};
 
-/// Three cycles of a gait by the firmware on the simulated UNO: that of an ELF, or the one inside
-/// this program.
+/// Records three cycles of a gait on the simulated UNO, with the firmware of an ELF or the one inside this program.
 ///
 /// # Errors
-/// Fails for no such gait, no firmware or another robot's, a simulation that fails.
+/// Fails for an unknown gait, a firmware that is missing or has another robot, or a simulation that fails.
 pub fn course(
     robot: &Robot,
     file: &RobotFile,

@@ -1,4 +1,4 @@
-//! An image that was built for another robot than the one that is named.
+//! Commands refuse an image that was built for another robot than the selected one.
 
 use std::path::PathBuf;
 
@@ -8,7 +8,7 @@ fn release() -> PathBuf {
     root().join("target/avr-atmega328p/release")
 }
 
-/// The name and the number of a robot, as `lizard gaits` and the firmware's build write them.
+/// The name and the hash of a robot, as `lizard gaits` and the firmware's build write them.
 fn robot_in(report: &str) -> String {
     let first = report.lines().next().expect("a line");
     let (_, robot) = first.split_once("robot ").expect("its name");
@@ -21,7 +21,7 @@ fn robot_of_image() -> String {
     robot_in(&gaits.expect("`make firmware` has been run"))
 }
 
-/// The file of a robot that is not in the image, and its name and number.
+/// The file of a robot that is not in the image, and the robot's name and hash.
 fn robot_outside_image() -> (String, String) {
     let named = ["unequal", "large"].map(|name| {
         let path = robot(name);

@@ -1,4 +1,4 @@
-//! `lizard flash` as a user meets it without a board.
+//! Tests of `lizard flash` without a board.
 
 use std::fs;
 use std::time::{Duration, Instant};
@@ -49,7 +49,7 @@ fn an_image_of_any_robot_is_made_in_an_empty_folder() {
         let piped = [&["flash", "image", "--robot", name], options].concat();
         let piped = run_in(folder.path(), &piped, "").success();
         assert!(piped == text, "the same goes to a pipe");
-        // By another reader of Intel HEX than the one that wrote it.
+        // Read by the simulator's loader, not by the code that wrote it.
         let image = simulated_uno::Image::parse_hex(&text).expect("it is Intel HEX");
         let robot = Robot::load(robot(name)).expect("it is right");
         let flash = image.flash();

@@ -1,6 +1,5 @@
-//! Long computations in parts: independent processes compute them, and `lizard merge` prints the
-//! same as one process. `make parallel-test` does it with GNU parallel
-//! and the commands that take longer.
+//! Long computations that are split into parts: independent processes compute the parts, and `lizard merge` prints
+//! the same as one process would. `make parallel-test` tests this with GNU parallel and commands that take longer.
 
 use crate::program::{lizard, paper};
 
@@ -8,7 +7,7 @@ fn complaint(arguments: &str, input: &str) -> String {
     lizard(arguments, input).refusal()
 }
 
-/// The output of all parts, the last one first.
+/// The output of all parts, the last part first.
 fn parts(arguments: &str, of: usize) -> String {
     let part = |number| lizard(&format!("{arguments} --part {number}/{of}"), "").success();
     (1..=of).rev().map(part).collect()
@@ -20,7 +19,7 @@ fn parts_together_print_byte_for_byte_what_one_process_prints() {
         ("prove --one-in 30000", 3),
         ("prove --one-in 30000 --json", 2),
         ("design --search --step 0.05", 2),
-        // More parts than there is to do.
+        // More parts than there are items to compute.
         ("design --search --step 0.1 --top 3 --json", 5),
     ] {
         let words = paper(words);

@@ -10,14 +10,14 @@ fn make(folder: &Path, arguments: &[&str]) -> Outcome {
     run(&[&["parts", &folder], arguments].concat())
 }
 
-/// A path without a folder.
+/// A path at which there is no folder.
 fn fresh_path(name: &str) -> PathBuf {
     let folder = scratch().join(name);
     let _ = fs::remove_dir_all(&folder);
     folder
 }
 
-/// The paper's robot with changes, in a file of this name.
+/// Writes the paper's robot with changes to a file of this name and returns its path.
 fn write_changed_paper(name: &str, change: impl Fn(String) -> String) -> String {
     let file = scratch().join(name);
     fs::write(&file, change(read("robots/paper.toml"))).expect("a file");

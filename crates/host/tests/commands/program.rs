@@ -5,7 +5,7 @@ use std::process::Command;
 
 use lizard_time_limit::LIMIT;
 
-/// The result of a run.
+/// The result of a run of `lizard`.
 #[derive(Debug)]
 pub struct Outcome {
     /// The exit code; none after a signal.
@@ -69,7 +69,7 @@ impl RobotFile {
         Self::changed("robots/paper.toml", name, changes)
     }
 
-    /// The same of another file than the paper's robot.
+    /// Another file of the repository with some lines changed.
     pub fn changed(file: &str, name: &str, changes: &[(&str, &str)]) -> Self {
         let mut text = read(file);
         for (from, to) in changes {
@@ -81,7 +81,7 @@ impl RobotFile {
         Self(path)
     }
 
-    /// The command line for this robot.
+    /// Adds this robot to a command line.
     pub fn of(&self, args: &str) -> String {
         format!("{args} --robot {}", self.0.display())
     }
@@ -108,7 +108,7 @@ pub fn run(arguments: &[&str]) -> Outcome {
 pub fn run_in(folder: &Path, arguments: &[&str], input: impl AsRef<[u8]>) -> Outcome {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
     command.args(arguments).current_dir(folder);
-    // A program that stops at bad input closes its end; that is not a failure here.
+    // A program that stops at bad input closes its standard input early; that is no failure of the test.
     let output = LIMIT.output(&mut command, input.as_ref());
     let output = output.expect("lizard ends");
     Outcome {

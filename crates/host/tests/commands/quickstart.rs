@@ -6,7 +6,7 @@ use lizard_robot::Robot;
 
 use crate::program::read;
 
-/// The paper's robot with an EEPROM that was never written, on 5 V.
+/// The paper's robot on a 5 V supply, with an EEPROM that was never written.
 struct Board {
     running: Running,
 }
@@ -24,7 +24,7 @@ impl Board {
         self.running.run(frames)
     }
 
-    /// The answer to a line, until all motion has ended.
+    /// The lines printed after a line is sent, until all motion has ended.
     fn send(&mut self, line: &str) -> Vec<String> {
         let mut answer = self.running.send(format!("{line}\r").as_bytes());
         answer.extend(self.run(100));

@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use crate::program::{RobotFile, lizard, paper, read};
 
-/// The object that a command prints for this name.
+/// The JSON object printed by a command whose value of `key` is `name`.
 fn object(line: &str, key: &str, name: &str) -> Value {
     let printed = lizard(line, "").success();
     let mut objects = printed
@@ -34,7 +34,7 @@ fn a_round_of_a_routine_leads_as_far_as_lizard_gaits_says_of_the_same_servos() {
     }
     let lost = part(&tour["predicted"], "turn") - part(&tour["by_servos"], "turn");
     assert!(lost > 1.0, "servos with a mass to turn lose some: {lost}");
-    // Two feet pull against two: neither may name a distance.
+    // Two feet pull against two, which decides no distance, so neither command may state one.
     let gaze = object(&robot.of("gaits --json"), "routine", "gaze");
     for path in [&twin("gaze", "own")["way"], &gaze["by_servos"]] {
         assert!(path["forward"].is_null() && path["turn"].is_f64(), "{path}");
@@ -52,7 +52,7 @@ fn the_image_runs_at_90_mm_a_second_on_pads_with_a_grain_and_still_turns() {
             "1.0",
             true,
         ),
-        // The one servo with which it does not.
+        // The only servo with which `run` stays below 90 mm/s.
         ("digital", "model = \"digital\"", "0.7", false),
     ] {
         let servo = format!("[servo]\n{servo}\n[servo.A1]");

@@ -41,7 +41,7 @@ fn help_groups_all_commands_by_purpose_with_the_owners_first() {
     let listed = headings[..5]
         .iter()
         .map(|heading| words_under(&help, heading).len());
-    // And the two for scripts.
+    // Two more commands, `merge` and `completions`, are for scripts.
     assert!(listed.sum::<usize>() + 2 <= 20, "{help}");
     assert!(words_under(&help, "Drive the robot").contains(&"console".to_owned()));
     assert_eq!(output(&["help"]), help);

@@ -13,8 +13,8 @@ use lizard_time_limit::LIMIT;
 use rustix::pty::{OpenptFlags, openpt, ptsname, unlockpt};
 use rustix::termios::{Winsize, tcsetwinsize};
 
-/// The robot of the simulated board, as the other tests find it: the file that
-/// `LIZARD_ROBOT` names, seen from the root of the project, or robot.toml.
+/// The robot file of the simulated board, found as in the other tests: the file that
+/// `LIZARD_ROBOT` names, relative to the root of the project, or robot.toml.
 fn robot() -> PathBuf {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let given = std::env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
@@ -34,7 +34,7 @@ pub fn lizard(folder: &Path, arguments: &[&str]) -> Command {
     command
 }
 
-/// Standard output, standard error, exit code.
+/// Runs `lizard` and returns standard output, standard error and the exit code.
 pub fn run(folder: &Path, arguments: &[&str], input: &str) -> (String, String, Option<i32>) {
     let Output {
         status,
@@ -47,7 +47,7 @@ pub fn run(folder: &Path, arguments: &[&str], input: &str) -> (String, String, O
     (text(stdout), text(stderr), status.code())
 }
 
-/// The first gait that moves of the robot under test.
+/// The first gait of the robot under test that moves.
 pub fn moving_gait(folder: &Path) -> String {
     let help = run(folder, &["console", "--sim"], "help\n").0;
     let mut lines = help.lines();
@@ -56,7 +56,7 @@ pub fn moving_gait(folder: &Path) -> String {
     gait.expect("the robot has a gait that moves").to_owned()
 }
 
-/// `lizard sim --pty`: a board with an EEPROM that lasts as long as it runs.
+/// A board simulated by `lizard sim --pty`; its EEPROM is lost when it ends.
 pub struct Uno {
     child: Child,
     link: PathBuf,
@@ -104,7 +104,7 @@ impl Drop for Uno {
     }
 }
 
-/// A pseudo terminal: our end, and the one for a program.
+/// A pseudo terminal: the test's end, the program's end, and its path.
 pub fn terminal() -> (File, OwnedFd, PathBuf) {
     let ours = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC);
     let ours = ours.expect("a pseudo terminal");
@@ -172,7 +172,7 @@ impl AtTerminal {
         self.keys.write_all(keys.as_bytes()).expect("it takes keys");
     }
 
-    /// Reads the screen's output so far; true at its end.
+    /// Reads the output so far; returns true once the program has closed the terminal.
     pub fn read(&mut self) -> bool {
         loop {
             match self.seen.try_recv() {
@@ -212,7 +212,7 @@ impl Device {
     /// A device that calls `act` with its end of the line repeatedly.
     pub fn start(mut act: impl FnMut(&mut File) + Send + 'static) -> Self {
         let (mut ours, theirs, path) = terminal();
-        // Else this test would be the program that has the port open.
+        // Otherwise this test itself would keep the port open.
         drop(theirs);
         let (end, ended) = mpsc::channel::<()>();
         let thread = std::thread::spawn(move || {

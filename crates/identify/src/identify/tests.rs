@@ -1,4 +1,4 @@
-//! The choice of the keys and their errors, on a smooth model that takes no time: three hundred robots.
+//! The choice of the keys and their errors, tested on three hundred robots with a smooth model that takes no time.
 
 use fastrand::Rng;
 
@@ -10,7 +10,7 @@ use crate::problem::MODEL_ERROR;
 const GAITS: usize = 8;
 const ERROR: f64 = 0.05;
 
-/// A model whose ways are curved functions of the keys, each gait another one.
+/// A model whose movements are curved functions of the keys, different for each gait.
 fn model(values: &Values) -> Vec<Travel> {
     let mut rng = Rng::with_seed(5);
     let mut part = || {
@@ -29,17 +29,17 @@ fn model(values: &Values) -> Vec<Travel> {
     (0..GAITS).map(&mut travel).collect()
 }
 
-/// A normal deviate: the sum of twelve even ones.
+/// An approximately normal deviate: the sum of twelve uniform ones.
 fn deviate(rng: &mut Rng) -> f64 {
     (0..12).map(|_| rng.f64() - 0.5).sum()
 }
 
-/// The values of the file.
+/// The key values of the file.
 fn start() -> Values {
     std::array::from_fn(|i| KEYS[i].least.max(0.0))
 }
 
-/// The ways of a robot, measured through a card.
+/// The movements of a robot as measured through a card that is glued on inexactly.
 fn measured(values: &Values, card: Card, rng: &mut Rng) -> Vec<Way> {
     let way = |travel: Travel| {
         let seen = card.seen(travel);
@@ -105,7 +105,7 @@ fn changed_keys_are_within_two_errors_in_95_of_100_and_right_ones_stay() {
 
 #[test]
 fn at_a_fold_the_error_is_that_of_the_flatter_side() {
-    /// A foot that is shorter than this does not stand, however short it is.
+    /// A foot shorter than this carries no load, however short it is.
     const FOLD: f64 = -0.5;
     let folded = |values: &Values| {
         let mut values = *values;
@@ -205,7 +205,7 @@ fn a_play_below_zero_is_not_written() {
         values[PLAY] = play;
         model(&values)
     };
-    // As far from the file's robot as one with play, to the other side.
+    // As far from the file's robot as a robot with play, in the opposite direction.
     for ((way, at), play) in ways.iter_mut().zip(with_play(0.0)).zip(with_play(0.5)) {
         way.mean[0] -= play.forward - at.forward;
         way.mean[1] -= play.left - at.left;

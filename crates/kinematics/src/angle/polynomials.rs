@@ -19,7 +19,7 @@ const MARGIN_SHARE: f64 = 1e-4;
 /// Points at which an error is measured.
 const POINTS: u32 = 2000;
 
-/// A polynomial that stands for part of a function.
+/// A polynomial that approximates part of a function.
 pub struct Polynomial {
     /// The polynomial's name in `src/angle.rs`.
     pub name: &'static str,

@@ -110,7 +110,7 @@ impl FiveBar {
     }
 }
 
-/// Both arms on their way to a point.
+/// Both arms, solved for a point.
 struct Arms {
     bars: FiveBar,
     /// From each shaft to the point.
@@ -172,7 +172,7 @@ fn crank_directions(
     if distance <= slack {
         return Err(Fault::OnShaft);
     }
-    // The crank against the line, scaled by twice the product of both lengths.
+    // Crank direction relative to the line to the point, scaled by twice the product of both lengths.
     let along = distance * distance + (crank - coupler) * (crank + coupler);
     let across = 2.0 * double_area(crank, coupler, distance);
     let bent = [across, -across].map(|across| {

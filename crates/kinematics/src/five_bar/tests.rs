@@ -95,7 +95,7 @@ proptest! {
     ) {
         if let Ok(pose) = bars.forward(left, right) {
             let (l, r) = (pose.type1_left(), pose.type1_right());
-            // At a type-1 singularity the angle is a square root of the point.
+            // Near a type-1 singularity the angle depends on the point like a square root.
             prop_assume!(l.abs() > 1e-2 && r.abs() > 1e-2 && pose.type2 > 1e-3);
             // A shaft under the end point leaves that crank's angle free.
             prop_assume!((pose.end_point - bars.left_shaft()).length() > 1.0);
@@ -132,7 +132,7 @@ fn the_robot_returns_from_point_to_pose_to_point_over_its_whole_workspace() {
 
 #[test]
 fn coinciding_crank_tips_are_a_singularity_and_not_a_number() {
-    // sin = cos of a 3-4-5-like triangle: tips meet at (0, 20 sqrt 2).
+    // cos theta = 1/3: the tips meet at (0, 20 sqrt 2).
     let theta = (1.0f64 / 3.0).acos().to_degrees();
     match HEAD.forward(theta, 180.0 - theta) {
         Err(Fault::Coincident) => {}

@@ -1,5 +1,5 @@
-//! Every condition of a safe pose, for robots without any symmetry, against a
-//! truth that writes each link and each angle out by its number in the paper.
+//! Every condition of a safe pose, for robots without any symmetry, compared with formulas that name each link and
+//! each angle by its number in the paper.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -48,7 +48,7 @@ fn truth(robot: &Lizard, [t1, t4, t8, t5]: [f64; 4]) -> Option<BTreeMap<&'static
     ]))
 }
 
-/// Limits that are different for every kind.
+/// Limits that differ from kind to kind of condition.
 fn any_limits() -> impl Strategy<Value = Limits> {
     let any = [0.05..0.9, 0.05..0.9, 0.05..0.9, -40.0..0.0, 0.0..60.0f64];
     any.prop_map(|values| Limits {
@@ -89,7 +89,7 @@ proptest! {
             prop_assert!(truth["type2_head"].min(truth["type2_tail"]) < 1e-6);
             return Ok(());
         };
-        // Nearly flat triangles cost the law of cosines half its digits.
+        // In nearly flat triangles the law of cosines loses half its digits.
         prop_assume!(truth["type2_head"].min(truth["type2_tail"]) > 1e-4);
         let conditions: BTreeMap<_, _> = s.conditions().map(|(what, v)| (what.name(), v)).collect();
         prop_assert_eq!(conditions.len(), 14);
@@ -97,7 +97,7 @@ proptest! {
             let found = conditions[name];
             prop_assert!((found - expected).abs() < 1e-7, "{name} {found} {expected}");
         }
-        // The same margins in their arrays, and of each end by itself.
+        // The array of margins, and each end by itself, give the same values.
         for (what, value) in s.margins.iter() {
             prop_assert_eq!(value, conditions[what.name()]);
         }
@@ -127,7 +127,7 @@ proptest! {
         let found: Vec<_> = limits.violations(&s).map(|v| (v.what, v.value, v.limit)).collect();
         prop_assert_eq!(limits.allow(&s), found.is_empty());
         prop_assert_eq!(&found, &expected);
-        // An end by itself finds its own.
+        // Each end by itself finds its own violations.
         let of_end = |end: End| limits.end_violations(end, s.end(end));
         let of_ends = End::ALL.into_iter().flat_map(of_end).map(|v| v.what.name());
         let of_all = expected.iter().map(|(what, ..)| what);
@@ -196,7 +196,7 @@ proptest! {
     fn the_angles_for_a_point_put_the_end_point_there_in_servo_order(
         (robot, pose, s) in any_solved(),
     ) {
-        // Only outward elbows are found again, and not at a singularity.
+        // The inverse returns outward elbows only, and loses digits near a singularity.
         prop_assume!(s.margins.type1.iter().chain(&s.margins.type2).all(|m| *m > 1e-2));
         let mut found = Vec::new();
         for end in End::ALL {

@@ -1,4 +1,4 @@
-//! A solution holds finite numbers only, whatever lengths and angles go in.
+//! A solution holds finite numbers only, for any lengths and angles.
 
 use lizard_kinematics::{AssemblyMode, Fault, FiveBar, FiveBarPose, Pose, Slider, Vector};
 use proptest::prelude::*;
@@ -15,7 +15,7 @@ fn any_length() -> impl Strategy<Value = f64> {
     ]
 }
 
-/// Five links that are alike in size, so that most close, or not at all alike.
+/// Five links of similar size, most of which close, or of unrelated sizes.
 fn any_bars() -> impl Strategy<Value = FiveBar> {
     let unit = || prop_oneof![Just(None), any_length().prop_map(Some)];
     (
@@ -69,7 +69,7 @@ proptest! {
             if let Ok(all) = bars.inverse(point) {
                 for a in all {
                     prop_assert!(a.theta_left.is_finite() && a.theta_right.is_finite());
-                    // Nothing went to zero on the way either: the arm ends there.
+                    // No intermediate result underflowed either: the arm really ends at the point.
                     let tip = bars.left_shaft() + Vector::direction(a.theta_left) * bars.crank_left;
                     let reach = (point - tip).length();
                     let error = (reach - bars.coupler_left).abs();

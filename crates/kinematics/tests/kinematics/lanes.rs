@@ -1,5 +1,5 @@
-//! Several five-bars or sliders computed at once have the bits of each alone. Some lanes do
-//! not close, which leaves the others as they are.
+//! Several five-bars or sliders computed at once give the same bits as each computed alone. Lanes that do not close
+//! do not affect the others.
 
 use lizard_kinematics::{End, Lanes, Lizard, Side, Vector};
 use proptest::prelude::*;
@@ -55,7 +55,7 @@ proptest! {
     }
 }
 
-/// The travel of a side, by way of its arms' angles.
+/// The travel of a side's slider, computed from the directions of its arms.
 fn travel_by_arms(robot: &Lizard, side: Side, pose: [f64; 4]) -> Option<f64> {
     let [front, rear] = side.pick(pose).map(Vector::direction);
     let closed = robot

@@ -40,13 +40,12 @@ proptest! {
     #[test]
     fn all_four_loops_close_in_the_chassis_frame((robot, pose, s) in any_solved()) {
         let [t1, t4, t8, t5] = pose;
-        // In chassis angles the tail's loop is the head's with other signs only
-        // in its frame, so one vector loop serves both.
+        // In chassis angles both loops have the same vector equation; only the frames of the ends differ in sign.
         let head = loop_gap(&robot.end(End::Head), [t1, s.theta2(), s.theta3(), t4]);
         let tail = loop_gap(&robot.end(End::Tail), [t5, s.theta6(), s.theta7(), t8]);
         prop_assert!(head[0].hypot(head[1]) < 1e-9);
         prop_assert!(tail[0].hypot(tail[1]) < 1e-9);
-        // R10 + R14 = R11 + R12 + R13, and alike on the right.
+        // R10 + R14 = R11 + R12 + R13, and the same on the right.
         let ([a1, a2, a3, a4], l) = (robot.shafts(), &robot.links);
         let left = a1 + cis(t1 + 90.0) * l.l14
             - a4 - cis(t5 - 90.0) * l.l11 - cis(s.left.phi()) * (l.l12 + l.l13 + s.left.s);

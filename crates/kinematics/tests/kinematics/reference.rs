@@ -1,6 +1,5 @@
-//! The same mechanisms solved in another way: Newton's method on the loop
-//! equations in joint angles, and circles met by the law of cosines. Nothing
-//! here uses the crate's construction, only its lengths.
+//! Reference solutions of the same mechanisms: Newton's method on the loop equations in joint angles, and
+//! intersections of circles by the law of cosines. They share nothing with the crate except the link lengths.
 
 #![allow(dead_code)] // Unit tests and integration tests use different parts.
 
@@ -46,7 +45,7 @@ pub fn loop_gap(bars: &FiveBar, degrees: [f64; 4]) -> [f64; 2] {
     ]
 }
 
-/// theta2, theta3 in degrees by Newton from a start, or `None` if it wanders off.
+/// theta2, theta3 in degrees by Newton's method from a start; `None` if it does not converge.
 pub fn newton(bars: &FiveBar, cranks: [f64; 2], start: [f64; 2]) -> Option<[f64; 2]> {
     let [mut t2, mut t3] = start;
     for _ in 0..60 {
@@ -77,7 +76,7 @@ pub fn end_point(bars: &FiveBar, theta_left: f64, theta_right: f64) -> Option<[f
     Some([point.x, point.y])
 }
 
-/// Robots of any proportions that come together: random links, l10 = l15.
+/// Robots of random proportions: each link 0.6 to 1.6 times that of the paper's robot, and l10 = l15.
 pub fn any_lizard() -> impl Strategy<Value = Lizard> {
     proptest::collection::vec(0.6..1.6f64, 20).prop_map(|factors| {
         let paper = lizard();

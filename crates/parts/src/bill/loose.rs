@@ -1,12 +1,12 @@
-//! Things to buy that are drawn nowhere on the robot: wires, tools, options.
+//! Things to buy that are not modelled as bodies of the robot: wires, tools, options.
 
 use crate::price::Price;
 
 /// Count, name, grams of one piece and price class.
 pub(super) type Row = (usize, &'static str, f64, Price);
 
-/// Things to buy that have no place of their own on the robot, such as wires. Their centre is taken to be
-/// that of the rest.
+/// Things to buy that have no place of their own on the robot, such as wires. Their mass centre is assumed to be
+/// that of all other bodies.
 pub(super) const ALWAYS: [Row; 12] = [
     (
         2,
@@ -47,8 +47,8 @@ pub(super) const ALWAYS: [Row; 12] = [
     (1, "soldering iron and solder", 0.0, Price::E),
 ];
 
-/// Things to buy for driving without a cable.
-/// They are an option, so neither mass nor sum has them.
+/// Things to buy for driving without a cable. They are optional, so neither the mass nor the sum of the prices
+/// includes them.
 pub(super) const RADIO: [Row; 5] = [
     (
         1,
@@ -72,8 +72,7 @@ pub(super) const RADIO: [Row; 5] = [
     (4, "jumper wire, socket to pin, 20 cm", 0.4, Price::B),
 ];
 
-/// Things to buy for the inputs of robot.toml: the input's name, and its row. They are an
-/// option, too.
+/// Things to buy for the inputs of robot.toml: the input's name, and its row. They are optional, too.
 pub(super) const INPUTS: [(&str, Row); 2] = [
     (
         "button",

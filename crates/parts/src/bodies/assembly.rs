@@ -82,12 +82,12 @@ impl Assembly {
         a.mount == b.mount || a.meets.contains(&b.name) || b.meets.contains(&a.name)
     }
 
-    /// The place of a mount's frame at a pose, with legs that do not lag.
+    /// The place of a mount's frame at a pose, if no leg lags behind its servo.
     pub fn place(&self, mount: Mount, pose: &Solution) -> Placement {
         self.place_on(mount, &Cranks::of(self.robot.lizard(), pose))
     }
 
-    /// The place of a mount's frame, for joints in any kind of number.
+    /// The place of a mount's frame, for joints of any number type.
     pub(crate) fn place_on<T: Real>(&self, mount: Mount, joints: &Cranks<T>) -> Placement<T> {
         let vector = |v: Vector| Vector::new(T::of(v.x), T::of(v.y));
         let turned = |servo: usize, at: Vector| Placement {

@@ -18,7 +18,7 @@ pub const SPLINE: f64 = 2.4;
 /// its three other sides.
 const PILOT: f64 = 0.75;
 
-/// From a seat to the middle of its servo's number, and as much outward, mm.
+/// Distance from a seat to the middle of its servo's number, and the number's shift outward, mm.
 const NUMBER: f64 = 4.0;
 
 /// The holes of a UNO from its middle, with the USB socket behind, mm: in mil from a corner
@@ -157,7 +157,7 @@ fn numbers(builder: &Builder) -> Vec<Shape> {
     let strokes = (0..4).flat_map(|servo| {
         let [wide, high] = mark::size("1");
         let middle = middle(builder, servo);
-        // Before the seat, away from the hole for the leads.
+        // On the inner side of the seat, away from the hole for the leads.
         let out = middle.x.signum() * NUMBER;
         let before = inward(servo) * (body.flange / 2.0 + 1.0 + NUMBER);
         let at = middle + before + at(out - wide / 2.0, -high / 2.0);
@@ -217,7 +217,7 @@ fn add_deck(builder: &mut Builder) {
     add.extend(wings);
     let screws = standoffs().map(|at| builder.hole(at));
     let threads = UNO_HOLES.map(|(x, y)| builder.thread(at(x, y)));
-    // It saves weight, and cable ties for the parts below the deck pass through it.
+    // The window saves weight, and cable ties for the parts below the deck pass through it.
     let window = Shape::rectangle(at(0.0, 4.0), at(12.0, 36.0), 3.0);
     let holes = [&screws[..], &threads, &leads::holes(), &[window], &open].concat();
     let bosses = UNO_HOLES.map(|(x, y)| Shape::disc(at(x, y), 4.0));

@@ -1,8 +1,8 @@
-//! The places of supply, terminal strips, plugs and straps on the robot.
+//! The places of power supply, terminal strips, plugs and straps on the robot.
 //!
-//! Each has a place, so that the proof of fit and the mass include it. Nothing moves above
-//! the deck. So it has two wings beside the board for what must be reached by hand: on the
-//! right what leads the battery's plus, on the left, beside the pins, the signals.
+//! Each of them is a body, so that the proof of fit and the mass include it. No part of the robot moves above the
+//! deck. So the deck has two wings beside the board for everything that must be reached by hand: on the right the
+//! parts of the battery's positive line; on the left, beside the board's pins, the signals.
 
 use lizard_kinematics::Vector;
 
@@ -16,27 +16,27 @@ use crate::layers::shape::Shape;
 const STRAP_SLOT: [f64; 2] = [17.0, 2.4];
 /// A slot for a cable tie, mm: along the plate and across.
 const TIE_SLOT: [f64; 2] = [4.0, 2.0];
-/// The least distance of the terminal strips' middles from the plate's, mm.
+/// Least distance of the terminal strips' middles from the plate's middle, mm.
 const STRIPS: f64 = 13.2;
 /// From the middle of the plate to the cable ties, which pass beside the battery's ends, mm.
 const TIES: f64 = 31.5;
 /// Thickness of a cable tie, mm.
 const TIE: f64 = 1.6;
 
-/// A wing of the deck, mm: its inner and its outer edge from the middle, half its length.
-/// Farther forward or back it would cover nuts of the sliders.
+/// A wing of the deck, mm: its inner and its outer edge from the middle, and half its length. A longer wing would
+/// cover nuts of the sliders.
 const WING: [f64; 3] = [25.2, 51.2, 40.0];
-/// The openings of a wing, mm: from and to in x, away from the middle, and in y. They save
-/// weight; between them is the arm that carries the wing.
+/// The openings of a wing, mm: from and to in x, away from the middle, then from and to in y. They save weight;
+/// between them is the arm that carries the wing.
 const OPEN: [[[f64; 2]; 2]; 2] = [
     [[32.5, 43.0], [-36.5, -26.0]],
     [[32.5, 43.0], [-12.0, 26.0]],
 ];
-/// The inner edge of what lies on a wing, mm from the middle.
+/// Inner edge of the things on a wing, mm from the middle.
 const ON_WING: f64 = 29.5;
-/// The cable ties of a wing, mm from the middle: inside and outside of what they hold.
+/// The cable ties of a wing, mm from the middle: on the inner and on the outer side of what they hold.
 const WING_TIES: [f64; 2] = [28.0, 48.4];
-/// Heights of the round socket's middle above the board, and its length beyond it, mm.
+/// Height of the round socket's middle above the board, and its length beyond the board's edge, mm.
 const SOCKET: [f64; 2] = [6.5, 2.0];
 /// The round socket's middle, mm to the right of the board's middle.
 const SOCKET_AT: f64 = 19.05;
@@ -63,8 +63,8 @@ pub fn slots(builder: &Builder) -> Vec<Shape> {
     slots
 }
 
-/// From the middle of the plate to the middles of the terminal strips, mm: the servos' leads
-/// pass between them, along the inner sides of their cases.
+/// Distance from the middle of the plate to the middles of the terminal strips, mm. The servos' leads pass between
+/// the strips, along the inner sides of the servos' cases.
 fn strips(builder: &Builder) -> f64 {
     let plate = builder.layout.plate;
     let cases = plate.cases.iter().map(|case| case.x.abs());
@@ -91,7 +91,7 @@ pub fn wings(holes: [(f64, f64); 4]) -> [Vec<Shape>; 2] {
     for (x, y) in holes {
         add.push(Shape::bar(at(x, y), at(middle.copysign(x), y), 5.0));
     }
-    // Behind the resistors, whose wires lie beside the middle of the strip.
+    // This tie is behind the resistors, whose wires lie beside the middle of the strip.
     for x in WING_TIES {
         cut.push(slot(-x, signals() - 11.0, TIE_SLOT));
     }
@@ -171,10 +171,10 @@ fn add_sized_block(
     builder.body(name, Kind::Fitting(fitting), Mount::Chassis, [prism]);
 }
 
-/// The fittings under the deck and under the plate.
+/// Adds the fittings under the deck and under the plate.
 fn add_below_plate(builder: &mut Builder) {
     let stack = builder.stack;
-    // Under the strap, and under the heads of the standoffs' screws.
+    // Below the strap and the heads of the standoffs' screws.
     let belly = stack.plate[0] - STRAP[1].max(builder.parts.screw.head_height) - 0.3;
     let deck = stack.deck[0];
     let room = STANDOFFS[1] - 3.4;
@@ -200,7 +200,7 @@ fn add_below_plate(builder: &mut Builder) {
     }
 }
 
-/// The fittings on the deck's wings.
+/// Adds the fittings on the deck's wings.
 fn add_on_deck(builder: &mut Builder) {
     let top = builder.stack.deck[1];
     let half = |fitting: Fitting| length(fitting, 0) / 2.0;
@@ -222,7 +222,7 @@ fn add_on_deck(builder: &mut Builder) {
     );
     let way = fuse() - (length(Fitting::Fuse, 1) + length(Fitting::Plus, 1)) / 2.0 - 0.3;
     add_block(builder, Fitting::Plus, at(x(Fitting::Plus), way), top);
-    // From each signal to the middle way: two over one way, two over two.
+    // Each resistor leads from a signal terminal to the middle one: two span one pitch, two span two.
     let outside = -ON_WING - length(Fitting::Signals, 0) - 0.4 - half(Fitting::Resistor);
     let row = length(Fitting::Resistor, 0) + 0.4;
     let places = [(1.0, -1.0), (0.0, -0.5), (0.0, 0.5), (1.0, 1.0)];
@@ -233,8 +233,8 @@ fn add_on_deck(builder: &mut Builder) {
     }
 }
 
-/// The battery's plug, before its end or, where a long battery leaves no room, on it; and
-/// the plug in the board's socket.
+/// Adds the battery's plug, ahead of the battery or, if a long battery leaves no room there, on top of it; and the
+/// plug in the board's round socket.
 fn add_plugs(builder: &mut Builder) {
     let [_, battery, high] = builder.parts.battery;
     let [wide, thick, tall] = Fitting::Plug.facts().size;
@@ -269,7 +269,7 @@ fn add_plugs(builder: &mut Builder) {
     add_block(builder, Fitting::RoundPlug, at(SOCKET_AT, y), low);
 }
 
-/// The strap around battery and plate.
+/// Adds the strap around battery and plate.
 fn add_strap(builder: &mut Builder) {
     let stack = builder.stack;
     let [battery_x, battery_y, battery_z] = builder.parts.battery;

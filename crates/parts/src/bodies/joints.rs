@@ -1,8 +1,8 @@
-//! The joints from which the places of bodies follow, in any kind of number.
+//! The joints that determine the places of the bodies, for any number type.
 
 use lizard_kinematics::{End, FiveBarPose, Lizard, Real, Side, SliderPose, Solution, Vector};
 
-/// Joints computed from the directions of some cranks. Those that depend on an unknown
+/// Joints computed from the directions of the cranks, of which some may be unknown. Joints that depend on an unknown
 /// crank are meaningless.
 pub struct Cranks<'a, T> {
     /// The robot's dimensions.

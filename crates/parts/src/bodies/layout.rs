@@ -20,7 +20,7 @@ pub const UNO_BOARD: f64 = 1.6;
 pub struct Layout {
     /// The servos' shafts, mm, chassis frame, servo order.
     pub shafts: [Vector; 4],
-    /// 1 where a link's arm stands counter-clockwise from its crank, else -1.
+    /// 1 if a link's arm is counter-clockwise from its crank, otherwise -1.
     pub hand: [f64; 4],
     /// Length of the cranks of head and tail, mm.
     pub crank: [f64; 4],

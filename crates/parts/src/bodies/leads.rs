@@ -24,14 +24,14 @@ const LEAVES: [f64; 2] = [3.0, 4.0];
 const BEND: f64 = 4.0;
 /// A hole for the leads and the wires, mm: across and along the plate.
 const WIRES: [f64; 2] = [8.4, 6.0];
-/// From the middle of the plate to such a hole: a little beyond the standoffs, mm.
+/// Distance of such a hole beyond the standoffs, mm.
 const BEYOND: f64 = 2.0;
 
 /// The notch in a servo's opening. `fit` is the air on each side, `outward` the direction
 /// of the shaft's end: 1 forward, -1 back.
 pub fn notch(body: &ServoBody, middle: Vector, fit: f64, outward: f64) -> Shape {
     let reach = body.length / 2.0 + LEAD[1] + fit;
-    // It begins within the case's own opening.
+    // The notch begins within the case's own opening.
     let from = body.length / 2.0 - 2.0;
     let half = (LEAD[0] + NOTCH_PLAY) / 2.0;
     let corner = |x: f64, y: f64| middle + Vector::new(x, outward * y);

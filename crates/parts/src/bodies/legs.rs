@@ -1,9 +1,8 @@
 //! The legs: crank, follower, coupler with the foot, and the screws that join them.
 //!
-//! A stiff robot on four stiff feet rocks: two feet across from each other carry nearly
-//! all of its weight. So each foot is on a leaf that yields, and a screw sets its height.
-//! The friction of the pad would bend a leaf high above the floor and turn the foot. So a
-//! column leads down, and the leaf is low.
+//! A stiff robot on four stiff feet rocks: two diagonal feet carry nearly all of its weight. So each foot is on a
+//! leaf spring, and a screw sets its height. High above the floor, the friction of the pad would bend the leaf and
+//! turn the foot. So a column leads down to a low leaf.
 
 use lizard_kinematics::Vector;
 use lizard_robot::LegPlan;

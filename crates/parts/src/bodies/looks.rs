@@ -1,10 +1,9 @@
 //! The parts that make the robot look like a lizard: two long links behind the tail's
 //! point, as the paper's robot has them, and a head ahead of the head's point.
 //!
-//! They drive nothing. The screw of the point and one more hold each of them on the
-//! coupler on which it lies, so it turns with that coupler: the left tail link under the
-//! lower coupler, the right one and the head on the upper one. At neutral they point
-//! straight back and ahead.
+//! They drive nothing. The screw of the end point and a second screw hold each of them on
+//! a coupler, with which it turns: the left tail link under the lower coupler, the right
+//! one and the head on the upper one. At neutral they point straight back and ahead.
 
 use lizard_kinematics::{End, Solution, Vector};
 
@@ -34,7 +33,7 @@ pub struct Looks {
     pub on_right: Vec<String>,
 }
 
-/// Length of an end's own part beyond its point, mm; 0 without one.
+/// Length of an end's decorative part beyond its point, mm; 0 without one.
 fn length(builder: &Builder, end: End) -> f64 {
     match end {
         End::Head => builder.parts.head,
@@ -42,8 +41,8 @@ fn length(builder: &Builder, end: End) -> f64 {
     }
 }
 
-/// The hole for the second screw in a coupler that carries something: its lower part,
-/// and where the screw's head is sunk if it comes from above.
+/// The hole for the second screw in a coupler that carries such a part: in the coupler's lower layer, and in its
+/// upper one, where the head of a screw from above is sunk.
 pub fn fixed(builder: &Builder, servo: usize, point: Vector) -> Option<[Shape; 2]> {
     let (end, hand) = at_end(servo);
     let at = point - Vector::new(BACK, 0.0);
@@ -84,7 +83,7 @@ pub fn add(builder: &mut Builder, end: End) -> Looks {
 /// A flat part: filled shapes and holes.
 type Flat = (Vec<Shape>, Vec<Shape>);
 
-/// The point of an end, and the way out from there at neutral, in a coupler's frame.
+/// The point of an end, and the outward direction there at neutral, in a coupler's frame.
 fn out(builder: &Builder, servo: usize, neutral: &Solution) -> [Vector; 2] {
     let (end, hand) = at_end(servo);
     let bars = neutral.end(end);
@@ -101,7 +100,7 @@ fn turned(direction: Vector, by: f64) -> Vector {
 
 fn tail(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> Flat {
     let [point, straight] = out(builder, servo, neutral);
-    // Seen from behind the robot, left is to the left.
+    // The left link points to the robot's left, the right one to its right.
     let (_, hand) = at_end(servo);
     let way = turned(straight, if hand == 0 { -APART } else { APART });
     let half = builder.half_bar();

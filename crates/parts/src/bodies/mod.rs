@@ -1,8 +1,7 @@
 //! The bodies of the robot, and where each is at a pose.
 //!
-//! A robot is some eighty bodies: printed parts, servos, screws, a board, a battery. Each
-//! file here makes the bodies of one place of the robot from its robot.toml;
-//! [`assembly`] has them all and moves them.
+//! A robot has some eighty bodies: printed parts, servos, screws, a board, a battery. Each file here makes the
+//! bodies of one area of the robot from its robot.toml; [`assembly`] has them all and moves them.
 
 pub(crate) mod assembly;
 pub(crate) mod builder;

@@ -1,9 +1,9 @@
 //! The pads: domes under the feet, each on the head of the screw that sets its foot's height.
 //!
-//! No foot is lifted, so a flat pad stops at the edge of a tile or a carpet. A dome slides up:
-//! where an edge touches it, it is hardly steeper than friction lets it climb. It is printed of
-//! a rubbery filament with its flat side on the bed. Below is a hole for the hex key; the head
-//! snaps in from above, through a mouth that is narrower than the head.
+//! No foot is lifted, so a flat pad would stop at the edge of a tile or a carpet. A dome slides over it, since its
+//! slope at the edge is hardly steeper than friction allows. The pad is printed of a rubbery filament with its flat
+//! side on the bed. Its underside has a hole for the hex key. The screw's head snaps in from above, through a mouth
+//! that is narrower than the head.
 //!
 //! A strip with a grain, as of climbing skin, can be glued along the dome from head to tail. Its front
 //! end is folded up into a notch of the rim, so that no edge of the floor meets it, and the notch
@@ -18,15 +18,15 @@ use crate::layers::stack::PAD_LIP;
 
 /// Radius of the hole for a 2 mm hex key, which is 2.3 mm over its corners, mm.
 const KEY_HOLE: f64 = 1.6;
-/// Two lines of a printer around this hole, mm.
+/// Width of the rim around this hole, two printed lines, mm.
 const RIM: f64 = 0.8;
-/// By how much the mouth above the head is narrower than the head all around, mm.
+/// Difference in radius between the screw's head and the narrower mouth above it, mm.
 const SNAP: f64 = 0.65;
-/// Height of the cones that make the dome, mm: their slopes are within 0.02 mm of the ball.
+/// Height of the cones that approximate the dome, mm: their slopes are within 0.02 mm of the sphere.
 const CONE: f64 = 0.1;
 /// Depth of the notch for the end of a strip, mm: as thick as a strip may be.
 pub(crate) const NOTCH: f64 = 1.5;
-/// Least width of a strip, mm: more than the hole for the key takes of it.
+/// Least width of a strip, mm: wider than the hole for the key.
 const STRIP: f64 = 5.0;
 /// Least material under the head, mm.
 const UNDER_HEAD: f64 = 1.0;
@@ -87,7 +87,7 @@ pub(crate) fn layers(parts: &Parts, point: Vector, floor: f64, head: Vector) -> 
         let ball = (high * (2.0 * pad.radius - high)).sqrt();
         ball.max(KEY_HOLE + RIM).min(half)
     };
-    // The height at which the ball is as wide as the rim.
+    // The height at which the sphere is as wide as the rim.
     let rim = pad.radius - (pad.radius.powi(2) - (KEY_HOLE + RIM).powi(2)).sqrt();
     let count = (dome / CONE).ceil() as u32;
     let heights = (0..=count).map(|number| (f64::from(number) * CONE).min(dome));
@@ -103,7 +103,7 @@ pub(crate) fn layers(parts: &Parts, point: Vector, floor: f64, head: Vector) -> 
         let z = [pair[0], pair[1]];
         let (radii, hole) = (z.map(outline), hole(f64::midpoint(z[0], z[1])));
         match &notch {
-            // A cone that is cut upright has an edge that is no arc.
+            // A cone with an upright cut has an edge that is not an arc, so this layer has upright walls.
             Some(notch) if radii[0] > half - NOTCH => {
                 let disc = Shape::disc(point, radii[0]);
                 Prism::new([disc], [hole, notch.clone()], z)

@@ -1,13 +1,11 @@
 //! The strut between a servo's link and its leg: one with a spring, or a rigid one.
 //!
-//! A strut with a stop: a hole at the servo's end, a slot at the leg's end, a spring
-//! between both screws. The spring pulls the leg's screw against the slot's inner end, so
-//! the leg follows its servo exactly until the foot is held by more than the spring's
-//! pull. Then the screw runs along the slot.
+//! A strut with a spring has a hole at the servo's end, a slot at the leg's end, and the spring between both
+//! screws. The spring pulls the leg's screw against the slot's inner end, so the leg follows its servo exactly
+//! until the force on the foot exceeds the spring's pull. Then the screw moves along the slot.
 //!
-//! Between its screws a spring is longer than in the shop, and so is its coil. It reaches
-//! nearly from screw to screw, and farther when the leg lags. So the strut is a channel,
-//! and the coil lies on its floor along its whole length.
+//! An installed spring is stretched, and so is its coil. It reaches nearly from screw to screw, and farther when
+//! the leg lags. So the strut is a channel, and the coil lies on its floor along its whole length.
 //!
 //! A rigid strut is a bar with two holes in the same places, for the same screws. It fits
 //! in the space of the one with a spring, so either can replace the other, and it has at
@@ -95,7 +93,7 @@ fn add_spring(builder: &mut Builder, servo: usize) {
     let coil = Prism::solid([coil], [stack.coil - radius, stack.coil + radius]);
     let (spring, mount) = (format!("spring {leg}"), Mount::Strut(servo));
     builder.body(spring, Kind::Spring, mount, [coil]);
-    // Heads lie over the hooks, so they reach to the coil's ends.
+    // The heads lie over the hooks and reach to the coil's ends.
     builder.allow_contact(&[
         format!("screw leg anchor {leg}"),
         format!("screw anchor {name}"),

@@ -29,7 +29,7 @@ const GAUGE: f64 = 30.0;
 pub fn coupon(parts: &Parts) -> [Part; 2] {
     let (servo, horn) = (&parts.servo, &parts.horn);
     let pitch = servo.width + 2.0 * STEP * f64::from(COLUMNS) + 4.0;
-    // From below: opening, pocket, hole and dots, sleeve.
+    // From the lower edge up: opening, pocket, hole and dots, sleeve.
     let max = STEP * f64::from(COLUMNS);
     let opening = 3.0 + LEAD[1] + max + servo.length / 2.0;
     let pocket = opening + servo.length / 2.0 + max + 3.0 + horn.hub / 2.0;
@@ -74,7 +74,7 @@ pub fn coupon(parts: &Parts) -> [Part; 2] {
         Prism::new([plate.clone()], floor, [0.0, FLOOR]),
         Prism::new([plate], below, [FLOOR, THICK]),
     ];
-    // Each sleeve is two fits higher than the one before, so the roofs begin one after another.
+    // Each sleeve is two fits higher than the previous one, so the roofs begin one after another.
     let mut low = THICK;
     for (column, roof) in roofs.into_iter().enumerate() {
         prisms.push(Prism::new(&*walls, &bores[column..], [low, roof]));

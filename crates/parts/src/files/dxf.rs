@@ -8,7 +8,7 @@ use std::fmt::Write;
 use crate::files::sheet::{Sheet, extent};
 use crate::layers::outline::Loop;
 
-/// The text of a file.
+/// The text of a DXF file.
 pub fn dxf(sheet: &Sheet, kerf: f64) -> String {
     let mut file = Groups::default();
     let [low, high] = extent(sheet);
@@ -39,7 +39,7 @@ pub fn dxf(sheet: &Sheet, kerf: f64) -> String {
     file.0
 }
 
-/// Pairs of a code and a value.
+/// Pairs of a group code and a value.
 #[derive(Default)]
 struct Groups(String);
 
@@ -55,7 +55,7 @@ impl Groups {
     }
 
     fn add_real(&mut self, code: u32, value: f64) {
-        // Without the sign of a zero.
+        // Adding 0 removes the sign of a negative zero.
         let value = (value * 1e9).round() / 1e9 + 0.0;
         self.add(code, format!("{value:.9}"));
     }

@@ -1,7 +1,7 @@
-//! A part's surface as triangles, without a gap.
+//! A part's surface as a closed mesh of triangles.
 //!
 //! Each edge of the solid is divided once, and both faces that share it use the same
-//! points, so the triangles fit whatever their number.
+//! points, so the triangles of neighbouring faces match.
 
 use std::collections::BTreeMap;
 
@@ -198,7 +198,7 @@ impl MeshBuilder<'_> {
         self.mesh.triangles.extend(triangles);
     }
 
-    /// The corner at which an edge begins, or ends.
+    /// The corner at which an edge of a loop begins or, if `is_last`, ends.
     fn end(&self, (edge, forward): (usize, bool), is_last: bool) -> usize {
         let line = &self.lines[edge];
         if forward == is_last {
@@ -209,8 +209,8 @@ impl MeshBuilder<'_> {
     }
 }
 
-/// The triangulation leaves out points on a straight line, which walls and other
-/// triangles have. A triangle with such points on a side is divided there.
+/// Divides triangles at the corners that lie on their sides. The triangulation leaves out points on a straight
+/// line, but walls and other triangles have corners there.
 fn fill(triangles: &mut Vec<[usize; 3]>, corners: &[(usize, Vector)]) {
     let mut done = 0;
     while done < triangles.len() {
@@ -226,7 +226,7 @@ fn fill(triangles: &mut Vec<[usize; 3]>, corners: &[(usize, Vector)]) {
         };
         triangles.swap_remove(done);
         if within.contains(&c) {
-            // It has no area, and its neighbours meet without it.
+            // The triangle has no area, and its neighbours meet without it.
             continue;
         }
         let chain = [&[a][..], &within, &[b]].concat();

@@ -1,7 +1,7 @@
 //! Drawings of parts to cut from a sheet: outlines to cut through, pockets to mill.
 //!
-//! A part can be cut where all of its layers have the same outer outline. Plate and
-//! deck cannot, but are each two sheets that are glued together.
+//! A part can be cut if all of its layers have the same outer outline. Plate and deck do not have that; each of
+//! their layers is a sheet, and the sheets are glued together.
 
 use lizard_kinematics::Vector;
 
@@ -72,7 +72,7 @@ fn pockets(prisms: &[Prism], outlines: &[Outline], [low, high]: [f64; 2]) -> Vec
     for (index, outline) in outlines.iter().enumerate() {
         let holes = outline.pieces.iter().flat_map(|piece| piece.iter().skip(1));
         for hole in holes {
-            // The layers go up, so a pocket that is known already is deeper.
+            // The layers are visited from below, so a pocket that is already listed is deeper.
             if layers.iter().any(|layer| layer.loops.contains(hole)) {
                 continue;
             }
@@ -103,7 +103,7 @@ fn is_open(outline: &Outline, hole: &Loop) -> bool {
     let sides = hole.sides.iter();
     let sum = sides.fold(Vector::default(), |sum, side| sum + side.from);
     let middle = sum * (1.0 / hole.sides.len() as f64);
-    // A little within the line, so that a hole of the same size counts as open.
+    // The probes lie a little within the line, so that a hole of the same size counts as open.
     let within = |point: Vector| middle + (point - middle) * 0.999;
     let ends = hole.ends();
     let mut probes = ends.flat_map(|(side, to)| [side.from, side.middle(to)]);

@@ -1,10 +1,9 @@
 //! A part's surface: flat faces and walls that share their edges.
 //!
-//! A stack of layers has walls along the outlines and flat faces where a layer ends
-//! and the next one does not cover it. Two layers' outlines may run together for a
-//! part of their way, so at each height both are cut where they meet. Every piece is
-//! then one edge, which exactly two faces share; from that follow a valid solid in
-//! STEP and a mesh without gaps.
+//! A stack of layers has walls along the outlines, and flat faces where a layer ends and the next one does not
+//! cover it. The outlines of two layers may coincide along a part of their length, so at each height both are cut
+//! where they meet. Every piece is then one edge, which exactly two faces share. This makes a valid solid in STEP
+//! and a mesh without gaps.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +16,7 @@ use crate::layers::outline::{self, Loop, Outline, SAME_POINT_MM, Side};
 /// The surface of a part, as edges and faces.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Solid {
-    /// Points from above, mm.
+    /// Points seen from above, mm.
     pub points: Vec<Vector>,
     /// The heights at which layers meet, ascending, mm.
     pub heights: Vec<f64>,
@@ -29,7 +28,8 @@ pub struct Solid {
     pub volume: f64,
 }
 
-/// An edge between two corners; upright if both are at one point, along a slope if they are at two heights.
+/// An edge between two corners: upright if both are one point at two heights, along a slope if they are two points
+/// at two heights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge {
     /// Two corners, each as a point and a height.
@@ -38,7 +38,7 @@ pub struct Edge {
     pub bulge: f64,
 }
 
-/// A face by its edges, each with its direction: true for forward.
+/// A face: loops of edges, each edge with its direction, true for forward.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Face {
     /// The surface that it lies on.
@@ -56,7 +56,8 @@ pub enum Surface {
     Bottom(usize),
     /// A wall along a side of an outline, which ends at a point.
     Wall(Side, Vector),
-    /// A wall that leans: along a side, which ends at a point, at this height; and its arc's radius at the next height, mm.
+    /// A leaning wall along a side, which ends at a point, from the height of this index; and its arc's radius at
+    /// the next height, mm.
     Slope(Side, Vector, usize, f64),
 }
 
@@ -71,7 +72,7 @@ struct Piece {
 }
 
 impl Solid {
-    /// The surface of layers that lie on each other, from the lowest to the highest.
+    /// The surface of a stack of layers, from the lowest to the highest.
     pub fn of(prisms: &[Prism]) -> Self {
         let cut_at = |share| {
             let cut = |prism: &Prism| Outline::of(&prism.cut_at(share));
@@ -117,7 +118,7 @@ type Cut<'a> = (&'a Outline, &'a [Vec<Piece>]);
 struct SolidBuilder {
     solid: Solid,
     edge_of: BTreeMap<(usize, usize, usize, usize), usize>,
-    /// Middles of pieces, which tell two arcs between the same points apart.
+    /// Middles of pieces, which distinguish two arcs between the same points.
     middles: Vec<Vector>,
     upright_of: BTreeMap<(usize, usize, usize), usize>,
 }
@@ -189,7 +190,7 @@ impl SolidBuilder {
         }
     }
 
-    /// Adds the flat faces at a height, which one layer covers and the other does not.
+    /// Adds the flat faces at a height, where one layer has material and the other has none.
     fn add_flats(&mut self, level: usize, lower: Cut, upper: Cut) {
         let tops = self.difference(lower, upper);
         self.add_faces(tops, Surface::Top(level), false);
@@ -342,7 +343,7 @@ pub(crate) fn progress(side: Side, to: Vector, point: Vector) -> f64 {
     };
     let (a, b) = (side.from - centre, point - centre);
     let angle = libm::atan2(a.cross(b), a.dot(b)) * side.bulge.signum();
-    // Rounding may put the start itself a little before the start.
+    // Rounding may give the start itself a slightly negative angle.
     if angle < -1e-6 {
         angle + std::f64::consts::TAU
     } else {
@@ -350,7 +351,7 @@ pub(crate) fn progress(side: Side, to: Vector, point: Vector) -> f64 {
     }
 }
 
-/// The bulge of an arc of an angle, rad, that turns the same way as another; 0 for a line.
+/// The bulge of an arc of an angle, rad, that turns in the direction of another bulge; 0 for a line.
 fn bulge_of(angle: f64, like: f64) -> f64 {
     match like == 0.0 {
         true => 0.0,

@@ -147,7 +147,7 @@ impl StepWriter {
             Surface::Slope(side, end, level, above) => {
                 let (centre, radius) = side.arc(end).expect("a slope is round");
                 let [low, high] = [level, level + 1].map(|level| solid.heights[level]);
-                // The angle of a cone in STEP is positive, so one that narrows upward stands on its head.
+                // The angle of a cone in STEP is positive, so one that narrows upward has a frame that points down.
                 let narrows = radius > above;
                 let up = if narrows { -1.0 } else { 1.0 };
                 let frame = self.frame([centre.x, centre.y, low], [0.0, 0.0, up], [1.0, 0.0, 0.0]);
@@ -174,7 +174,7 @@ impl StepWriter {
         }
     }
 
-    /// The product's header, which readers require, and its units.
+    /// Adds the product's entities, which readers require, and its units.
     fn add_product(&mut self, name: &str, solid: usize) {
         let context = self.last_id + 1;
         // `#+3` is the third entity of the list, `#NAME` the part's name.

@@ -2,7 +2,7 @@
 
 use crate::files::mesh::Mesh;
 
-/// The bytes of a file.
+/// The bytes of an STL file.
 pub fn stl(name: &str, mesh: &Mesh) -> Vec<u8> {
     let mut bytes = format!("lizard parts: {name}, mm").into_bytes();
     bytes.resize(80, b' ');
@@ -16,7 +16,7 @@ pub fn stl(name: &str, mesh: &Mesh) -> Vec<u8> {
         let unit = normal.map(|part| if length > 0.0 { part / length } else { 0.0 });
         for corner in [unit, a, b, c] {
             for part in corner {
-                // Neither -0 nor 0 is more right; one of them is the same every time.
+                // Adding 0 turns -0 into 0, so that equal meshes give equal bytes.
                 bytes.extend((part as f32 + 0.0).to_le_bytes());
             }
         }

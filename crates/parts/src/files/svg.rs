@@ -12,7 +12,7 @@ const MARGIN: f64 = 5.0;
 /// Colours of the lines: first to cut through, then pockets.
 const COLOURS: [&str; 4] = ["#d00000", "#0050c0", "#a000a0", "#008040"];
 
-/// The text of a file.
+/// The text of an SVG file.
 pub fn sheet_svg(sheet: &Sheet, kerf: f64) -> String {
     let [low, high] = extent(sheet);
     let (width, height) = (high.x - low.x + 2.0 * MARGIN, high.y - low.y + 2.0 * MARGIN);
@@ -51,7 +51,7 @@ fn path(line: &Loop, page: impl Fn(Vector) -> (f64, f64)) -> String {
         }
         let (x, y) = page(to);
         let _ = match side.arc(to) {
-            // The page's y points down, so a left turn goes against its clock.
+            // The page's y axis points down, so a left turn has the sweep flag 0.
             Some((_, radius)) => write!(
                 data,
                 "A{radius:.6} {radius:.6} 0 {} {} {x:.6} {y:.6}",

@@ -12,8 +12,7 @@ fn replace_marks(text: &str, mark: &str, element: &str) -> String {
     result
 }
 
-/// The guide's Markdown as a page. Only headings, pictures, tables, code and paragraphs
-/// are known.
+/// The guide's Markdown as a page. Only headings, pictures, tables, code and paragraphs are supported.
 pub fn html(markdown: &str) -> String {
     let escape = |text: &str| {
         let text = text.replace('&', "&amp;").replace('<', "&lt;");

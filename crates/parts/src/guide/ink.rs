@@ -8,7 +8,7 @@ use crate::layers::outline::bounds;
 
 /// Margin around the robot, pixels.
 const MARGIN: f64 = 12.0;
-/// Room for names on each side of a picture, and the height of a name, pixels.
+/// Space for names on each side of a picture, and the height of a name, pixels.
 const BESIDE: f64 = 165.0;
 const LINE: f64 = 16.0;
 const FONT: &str = "font-family=\"sans-serif\" font-size=\"12\" fill=\"#111\"";
@@ -32,7 +32,7 @@ pub struct Label {
     pub beside: bool,
 }
 
-/// The part of the page that is shown, mm before the page's scale.
+/// The part of the page that is shown, unscaled, mm.
 pub(super) struct Frame {
     low: (f64, f64),
     high: (f64, f64),
@@ -59,7 +59,7 @@ impl Frame {
 /// Shapes in drawing order.
 #[derive(Default)]
 pub(super) struct Ink {
-    /// Colour, loops, and whether its edge is drawn.
+    /// Colour, loops, and true if the edge is drawn.
     shapes: Vec<(String, Vec<Trail>, bool)>,
 }
 
@@ -101,7 +101,7 @@ impl Ink {
                 for (x, y) in line {
                     let to = (tenths(x - low.0, x0), tenths(y - low.1, MARGIN));
                     let (x, y) = (to.0 - at.0, to.1 - at.1);
-                    // Behind the first point each pair is a line, and a minus separates.
+                    // After the first point each pair is a relative line, and a minus sign separates numbers.
                     let _ = match (start, x < 0) {
                         (None, _) => write!(data, "m{x}"),
                         (Some(_), _) if (x, y) == (0, 0) => continue,
@@ -156,7 +156,7 @@ impl Ink {
     }
 }
 
-/// Names below each other at one side, each with a line to its place.
+/// Writes a column of names at one side, each with a line to its place.
 fn write_column(text: &mut String, column: &[Name], is_left: bool, width: f64, height: f64) {
     let count = column.len() as f64;
     let mut min = LINE;
@@ -168,7 +168,7 @@ fn write_column(text: &mut String, column: &[Name], is_left: bool, width: f64, h
             true => (8.0, BESIDE - 4.0, "start"),
             false => (width - 8.0, width - BESIDE + 4.0, "end"),
         };
-        // The line begins where the words end, about.
+        // The line begins about where the words end.
         let words = 6.4 * label.text.chars().count() as f64;
         let from = if is_left { edge + words } else { edge - words };
         let from = if is_left {

@@ -1,7 +1,6 @@
 //! The guide to building the robot, step by step, with pictures of the model.
 //!
-//! In this order a screwdriver can reach every screw, and the electronics are tried
-//! before anything could jam.
+//! The order of the steps lets a screwdriver reach every screw, and tests the electronics before anything can jam.
 
 pub(crate) mod corner;
 pub(crate) mod html;
@@ -44,12 +43,12 @@ const BEFORE: &str = "No printed robot has walked yet. So print in this order, a
 Print all parts as they lie, in layers of 0.2 mm, **without supports**. A slicer may offer some under the two ends of a sleeve's \
 roof: that is a bridge of 6.4 mm, which needs none.";
 
-/// The step in which pads are put on their screws, and what is added to it for pads with a strip.
+/// Title of the step in which pads are put on their screws, and the text added to it for pads with a strip.
 const BENCH: &str = "Legs, on the bench";
 const STRIP: &str = " Before you press the heads in, glue a strip along each dome, from its notch to the other side. The tips of its hairs or \
 bristles point away from the notch; its front end is folded up and glued into the notch, so that no edge of the floor catches it. \
 Take all four from one piece, since each lifts its foot by its thickness, and cut a hole of 4 mm over the hole for the key.";
-/// The step after which each pad keeps its place, and what is added to it for pads with a grain.
+/// Title of the step after which each pad keeps its place, and the texts added to it for a grain or a strip.
 const LEVEL: &str = "Level the feet";
 const GRAIN: &str = " At last turn each pad on its screw until its grain is right: a finger glides smoothly over it \
 from head to tail. docs/gaits.md says more about pads with a grain.";
@@ -138,7 +137,7 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
     Ok(files)
 }
 
-/// The guide's words about holes to drill.
+/// The guide's text about holes to drill.
 fn drilled(parts: &[Part]) -> String {
     let holes = |part: &Part| match part.printed().1 {
         0 => None,
@@ -230,7 +229,7 @@ fn at_corner(body: &Body) -> bool {
     }
 }
 
-/// The guide's words about links to turn out of the way.
+/// The guide's text about links to turn out of the way.
 fn turns_in_words(assembly: &Assembly, aside: &AccessPose, is_at_bench: bool) -> String {
     let neutral: [f64; 4] = assembly.robot().neutral().into();
     let turns = (0..4).map(|servo| (servo, aside.pose[servo] - neutral[servo]));

@@ -1,4 +1,4 @@
-//! The papers of `lizard parts` besides the files of the parts: bill and guide.
+//! The documents of `lizard parts` besides the files of the parts: bill and guide.
 
 use lizard_kinematics::Solution;
 

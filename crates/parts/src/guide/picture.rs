@@ -1,10 +1,9 @@
-//! The robot, or some of its bodies, in perspective.
+//! A perspective drawing of the robot, or of some of its bodies.
 //!
-//! Everything is a flat layer seen from above, so the order of drawing is known without a
-//! search: the space is cut at every height at which something begins or ends, and the
-//! slices are drawn from below to above. In a slice, walls are drawn from far to near and
-//! then the tops: a wall never rises above its own slice, so it cannot hide a top of that
-//! slice.
+//! Everything is a flat layer seen from above, so the drawing order is known without a search. The space is cut at
+//! every height at which something begins or ends, and the slices are drawn from the lowest to the highest. In a
+//! slice, walls are drawn from far to near and then the tops: a wall never rises above its own slice, so it cannot
+//! hide a top of that slice.
 
 use lizard_kinematics::{Solution, Vector, sin_cos};
 
@@ -39,15 +38,15 @@ impl<'a> PictureBody<'a> {
 /// A view of the robot.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
-    /// Direction of the eye from above: deg counter-clockwise from the robot's right.
+    /// Direction of the eye in plan view, deg counter-clockwise from the robot's right.
     pub azimuth: f64,
-    /// Direction of the eye above the floor, deg.
+    /// Elevation of the eye above the floor, deg.
     pub elevation: f64,
     /// Width of the picture, pixels.
     pub width: f64,
     /// True to turn the robot over about its long axis and show it from below.
     pub from_below: bool,
-    /// True to show only the bodies that are not grey, and a little around them.
+    /// True to frame only the bodies that are not grey, with a margin around them.
     pub close_up: bool,
 }
 
@@ -67,9 +66,9 @@ impl Default for View {
 const AWAY: f64 = 900.0;
 /// Largest angle of a chord, rad.
 const CHORD: f64 = 0.55;
-/// The thinnest slice, mm.
+/// Least height of a slice, mm.
 const SLICE: f64 = 0.45;
-/// Radius below which a hole has a screw in it, mm.
+/// Radius below which a hole is not drawn, since a screw fills it, mm.
 const HOLE: f64 = 1.75;
 
 /// Servos A1 to A4 and what they move: Okabe and Ito's colours and a purple of Tol's.
@@ -99,7 +98,7 @@ impl Eye {
         }
     }
 
-    /// A point of space on the page, mm before the page's scale; y down.
+    /// Projects a point of space onto the page, mm before the page's scale; y down.
     fn page(&self, point: Vector, z: f64) -> (f64, f64) {
         let (x, along) = (point.dot(self.right), point.dot(self.away));
         let near = along * self.cos + z * self.sin;
@@ -108,7 +107,7 @@ impl Eye {
         (x * scale, -up * scale)
     }
 
-    /// The place of the eye, from above.
+    /// The position of the eye in plan view.
     fn at(&self) -> Vector {
         self.away * (AWAY * self.cos)
     }
@@ -120,7 +119,7 @@ type Wall = (f64, Trail, [f64; 3]);
 /// A layer of a body in the picture.
 struct Layer {
     colour: [f64; 3],
-    /// True if it is grey.
+    /// True if the body is drawn in grey.
     grey: bool,
     /// Outer loops and holes as points.
     loops: Vec<Vec<Vector>>,
@@ -240,7 +239,7 @@ fn points(line: &Loop) -> Vec<Vector> {
 }
 
 impl Layer {
-    /// Turns it over about the robot's long axis; its lines keep the material on their left.
+    /// Turns the layer over about the robot's long axis; its lines keep the material on their left.
     fn turn_over(&mut self) {
         for line in &mut self.loops {
             for at in line.iter_mut() {

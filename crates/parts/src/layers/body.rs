@@ -20,7 +20,7 @@ pub struct Prism {
     pub cut: Vec<Shape>,
     /// Bottom and top, mm above the chassis plate's top.
     pub z: Span,
-    /// Lengths by which the filled shapes, which are discs then, are smaller in radius at the bottom and at the top, mm.
+    /// Reductions of the filled shapes' radius at the bottom and at the top, mm; above 0 only for discs.
     pub inset: [f64; 2],
 }
 
@@ -70,7 +70,7 @@ impl Prism {
         }
     }
 
-    /// The layer as its walls are at a share of its height, 0 at the bottom to 1 at the top.
+    /// The layer with upright walls and the cross-section at a share of its height: 0 at the bottom, 1 at the top.
     pub(crate) fn cut_at(&self, share: f64) -> Cow<'_, Self> {
         if self.inset == [0.0; 2] {
             return Cow::Borrowed(self);
@@ -98,7 +98,7 @@ pub enum Kind {
     Screw(f64),
     /// A screw with a hexagonal head, held from turning by the part's hexagonal recess.
     HexScrew(f64),
-    /// A self-tapping screw from a servo's bag.
+    /// A self-tapping screw that comes with a servo.
     ServoScrew,
     /// A small self-tapping screw that holds a horn in its link, by its length, mm.
     HornScrew(f64),
@@ -126,7 +126,7 @@ impl Kind {
         matches!(self, Self::Printed | Self::Pad)
     }
 
-    /// The word used for it in placements.json and on the page.
+    /// The word for the kind in placements.json and on the page.
     pub fn word(self) -> &'static str {
         match self {
             Self::Printed => "printed",
@@ -162,8 +162,8 @@ pub enum Mount {
     /// A leg's coupler, which carries the foot and never turns. Origin at its joint
     /// with the crank, x towards the follower.
     Foot(usize),
-    /// A leg's strut, which never turns while the leg does not lag. Origin at the
-    /// anchor on the servo's link, x towards the leg.
+    /// A leg's strut, which does not turn as long as the leg does not lag behind its servo. Origin at the anchor on
+    /// the servo's link, x towards the leg.
     Strut(usize),
     /// The coupler of head or tail on the crank of this servo. Origin at the crank's
     /// tip, x along the coupler.
@@ -207,7 +207,7 @@ fn sorted([a, b]: [usize; 2]) -> Vec<usize> {
 pub struct Body {
     /// The unique name, such as `link A1` or `strut LF`.
     pub name: String,
-    /// Its kind.
+    /// The body's kind.
     pub kind: Kind,
     /// The mount that it moves with.
     pub mount: Mount,

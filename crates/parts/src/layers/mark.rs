@@ -40,7 +40,7 @@ fn lines(digit: char) -> &'static [[(f64, f64); 2]] {
     }
 }
 
-/// A mark's lines with its lower left corner at a place.
+/// The lines of a mark whose lower left corner is at a position.
 pub fn strokes(text: &str, position: Vector) -> Vec<Shape> {
     let [wide, high] = DIGIT;
     let mut strokes = Vec::new();
@@ -86,7 +86,7 @@ pub fn engraved(prisms: &[Prism], text: &str) -> Option<Vec<Prism>> {
     None
 }
 
-/// The lower left corner of a mark that has room in an outline.
+/// Lower left corner of a place in an outline that has room for a mark.
 fn place(outline: &Outline, text: &str, free: impl Fn(Vector) -> bool) -> Option<Vector> {
     let ends = outline.loops().flat_map(Loop::ends);
     let [low, high] = bounds(ends.flat_map(|(side, to)| [side.from, side.middle(to)]));

@@ -213,8 +213,8 @@ impl Side {
         Vector::new(middle.x, middle.y)
     }
 
-    /// Points on the arc to an end, its ends left out: as many parts as `count` returns
-    /// for the radius and the angle, rad. A line has none.
+    /// Points that divide the arc to an end, without its ends, into as many parts as `count` returns for its radius
+    /// and its angle, rad. A line has none.
     pub(crate) fn along(&self, to: Vector, count: impl Fn(f64, f64) -> u32) -> Vec<Vector> {
         let Some((centre, radius)) = self.arc(to) else {
             return Vec::new();
@@ -277,7 +277,7 @@ fn polyline(shape: &Shape) -> Polyline<f64> {
             continue;
         }
         let [begin, end] = [incoming, outgoing].map(|way| at + way.right() * *radius);
-        // tan of a quarter of the turn: half of the half.
+        // Tangent of a quarter of the turn: the half-angle formula, applied twice.
         let (sin, cos) = (incoming.cross(outgoing), incoming.dot(outgoing));
         let bulge = if n == 2 {
             1.0

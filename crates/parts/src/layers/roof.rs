@@ -1,9 +1,9 @@
 //! Roofs that a printer can make without supports.
 //!
-//! A sunk pocket that lies below when a part is printed has a roof, and in its middle a
-//! hole. A printer can span the pocket with straight lines from edge to edge, but not
-//! draw a ring in the air. So the hole is closed there by one layer, which is drilled
-//! through when the part is done.
+//! A sunk pocket on the underside of a part, as it is printed, has a roof with a hole in
+//! the middle. A printer can span the pocket with straight lines from edge to edge, but
+//! cannot draw a ring in mid-air. So one layer closes the hole, and is drilled through
+//! after printing.
 
 use lizard_kinematics::Vector;
 
@@ -13,12 +13,12 @@ use crate::layers::shape::Shape;
 
 /// Height of a printer's layer, mm. A hole is closed by one layer.
 pub const LAYER_MM: f64 = 0.2;
-/// Distance around a hole at which its support is searched, mm.
+/// Distance from a hole's edge at which its support is looked for, mm.
 const BESIDE: f64 = 0.3;
 /// Heights that differ by less are the same, mm.
 const SAME_HEIGHT_MM: f64 = 1e-6;
 
-/// Layers in which the holes that would begin in the air are closed, and their number.
+/// The layers with all holes closed that would begin in the air, and the number of these holes.
 pub fn closed(prisms: &[Prism]) -> (Vec<Prism>, usize) {
     let mut layers = prisms.to_vec();
     let mut count = 0;
@@ -71,7 +71,7 @@ pub fn in_air(prisms: &[Prism]) -> Vec<Vector> {
     middles
 }
 
-/// True if a hole's edge, which lies in the material, has nothing below it.
+/// True if a hole's edge lies in the material and has nothing below it.
 fn begins_in_air(hole: &Shape, prism: &Prism, below: &Outline) -> bool {
     let outline = Outline::of(prism);
     let edge = Shape {

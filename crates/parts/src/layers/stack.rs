@@ -24,8 +24,7 @@ pub const PLAY: f64 = 0.2;
 pub const HEX: f64 = 2.0;
 /// Height of the seat under a servo's flange, mm. It lifts the horn above the strut.
 const SEAT: f64 = 2.6;
-/// Height of a leg's bearing on the plate, mm. 0.2 mm of play in it lets the foot, six
-/// times as far out, give 1.2 mm.
+/// Height of a leg's bearing on the plate, mm. At 0.2 mm of play in it the foot, six times as far, moves 1.2 mm.
 const BEARING: f64 = 8.5;
 /// From the underside of a leg's crank to the tip of its anchor's screw, mm.
 const TIP: f64 = 0.1;

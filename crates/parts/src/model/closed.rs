@@ -1,4 +1,4 @@
-//! The joints at which the robot's loops are cut; constraints close them again.
+//! Joints at which the robot's closed loops are cut to make a tree of bodies. Constraints close them again.
 
 use lizard_kinematics::{End, Side, Vector};
 
@@ -6,7 +6,7 @@ use crate::bodies::assembly::Assembly;
 use crate::layers::body::Mount;
 use crate::model::node::Node;
 
-/// A joint that a constraint closes: a point that two bodies share.
+/// A cut joint that a constraint closes: a point that two bodies share.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Closed {
     /// The name, such as `end head`.
@@ -17,7 +17,7 @@ pub(crate) struct Closed {
     pub at: Vector,
 }
 
-/// All such joints: of head and tail, sliders, the legs' parallelograms, struts.
+/// Returns all cut joints: those of head and tail, of the sliders, of the legs' parallelograms and of the struts.
 pub(crate) fn all(assembly: &Assembly, slotted: bool) -> Vec<Closed> {
     let (lizard, layout) = (assembly.robot().lizard(), assembly.layout());
     let mut all = Vec::new();

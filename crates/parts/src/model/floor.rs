@@ -1,4 +1,4 @@
-//! The floor: level or rising, with blocks on it, and with its own grip on each pad.
+//! The floor: level or sloping, with blocks on it, and with its own friction for each pad.
 
 use lizard_robot::Robot;
 
@@ -7,18 +7,18 @@ use lizard_robot::Robot;
 pub struct Floor {
     /// The blocks that lie on it.
     pub blocks: Vec<Block>,
-    /// The angle by which it rises ahead of the robot, deg.
+    /// The angle by which it rises in the robot's forward direction, deg.
     pub rises: f64,
-    /// The friction of each pad on it, servo order.
+    /// The friction coefficient under each pad, in servo order.
     pub friction: [f64; 4],
 }
 
 /// A block on the floor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Block {
-    /// The middle: to the right and forward of the robot's place at the start, mm.
+    /// The middle, mm to the right of the robot's start position and ahead of it.
     pub at: [f64; 2],
-    /// The size to the right, forward and up, mm, before it is turned.
+    /// The size to the right, forward and up, mm, before the block is turned.
     pub size: [f64; 3],
     /// The angle by which it is turned about its middle, deg counter-clockwise.
     pub turned: f64,

@@ -55,7 +55,7 @@ impl Inertia {
         self
     }
 
-    /// The same body in another place, mm from its own.
+    /// The same body moved by an offset, mm.
     pub fn moved(mut self, by: [f64; 3]) -> Self {
         for i in 0..3 {
             for j in 0..3 {
@@ -69,7 +69,7 @@ impl Inertia {
         self
     }
 
-    /// The moments of two bodies together.
+    /// The moments of this body and another one together.
     pub fn and(mut self, other: &Self) -> Self {
         self.mass += other.mass;
         for i in 0..3 {
@@ -86,8 +86,8 @@ impl Inertia {
         self.first.map(|part| part / self.mass)
     }
 
-    /// The inertia about the mass centre, g mm^2: xx, yy, zz, xy, xz, yz, the products
-    /// with the sign of a tensor.
+    /// The inertia about the mass centre, g mm^2: xx, yy, zz, xy, xz, yz. The products have the sign that they have
+    /// in the inertia tensor.
     pub fn tensor(&self) -> [f64; 6] {
         let at = self.centre();
         let about = |i: usize, j: usize| self.second[i][j] - self.mass * at[i] * at[j];
@@ -96,7 +96,7 @@ impl Inertia {
         [y + z, x + z, x + y, -xy, -xz, -yz]
     }
 
-    /// The same inertia, kg m^2, as the files have it.
+    /// The same inertia in kg m^2, in the notation of the files.
     pub fn written_tensor(&self) -> [String; 6] {
         // kg m^2 per g mm^2.
         const MILLI_CUBED: f64 = 1e-9;

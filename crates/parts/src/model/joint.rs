@@ -1,4 +1,4 @@
-//! Joints as URDF and SDF have them: names without blanks, ranges, friction.
+//! Joints for URDF and SDF: names without blanks, ranges, friction.
 
 use lizard_kinematics::Side;
 use lizard_robot::SLOT;
@@ -11,22 +11,22 @@ use crate::model::text::{MILLI, round};
 use crate::model::writer::Writer;
 
 impl Node {
-    /// The node's name without a blank, as ROS wants names.
+    /// The node's name without blanks, as ROS requires.
     pub(super) fn identifier(self) -> String {
         self.name().replace(' ', "_")
     }
 }
 
 impl Closed {
-    /// The joint's name without a blank.
+    /// The joint's name without blanks.
     pub(super) fn identifier(&self) -> String {
         self.name.replace(' ', "_")
     }
 }
 
 impl Writer<'_> {
-    /// The name of a body's joint with its parent: that of the servo that turns it, or its own.
-    /// In SDF no joint may have the name of a body.
+    /// The name of the joint between a body and its parent: that of the servo that drives it, or one made from the
+    /// body's name. In SDF no joint may have the name of a body.
     pub(super) fn joint_name(&self, node: Node) -> String {
         match self.motor_on(node) {
             Some(servo) => NAMES[servo].to_owned(),
@@ -34,7 +34,7 @@ impl Writer<'_> {
         }
     }
 
-    /// The range of a body's joint, rad or m from neutral; `None` if it has no ends.
+    /// The range of a body's joint, rad or m from neutral; `None` if it is unlimited.
     pub(super) fn range(&self, node: Node) -> Option<[f64; 2]> {
         let robot = self.assembly.robot();
         let range = match (self.motor_on(node), node) {
@@ -69,7 +69,7 @@ impl Writer<'_> {
             }
             (None, Node::Of(Mount::Rod(_))) => [0.0, motors.joints.slider],
             (None, Node::Pad(_)) => [self.leaf()[1], 0.0],
-            // Grease: a link that is free in its play does not ring.
+            // Grease: it damps a link that moves freely within its play.
             (None, Node::Of(Mount::Link(_))) => [1e-5, 0.0],
             (None, Node::Slot(_)) => [0.1, 0.0],
             _ => [0.0, self.scene.pins * MILLI],

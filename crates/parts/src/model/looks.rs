@@ -1,8 +1,8 @@
-//! Looks: the parts' colours, which are also what groups them to meshes.
+//! The parts' colours. Parts of one body and one colour share a mesh.
 
 use crate::layers::body::Kind;
 
-/// A look of some kinds of parts.
+/// The colour that some kinds of parts share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Look {
     /// The name of its material.

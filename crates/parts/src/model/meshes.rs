@@ -1,4 +1,4 @@
-//! The meshes of URDF and SDF, which name files: one for each body and look.
+//! Mesh files for URDF and SDF: one for each body and look.
 
 use crate::files::File;
 use crate::files::mesh::Mesh;
@@ -7,7 +7,7 @@ use crate::model::looks::Look;
 use crate::model::node::Node;
 use crate::model::pieces::Piece;
 
-/// The looks that the parts of a body have.
+/// The looks that occur among the parts of a body.
 pub(super) fn looks(pieces: &[Piece], node: Node) -> impl Iterator<Item = Look> {
     let is_present = move |look: &Look| {
         let mut own = pieces.iter().filter(|piece| piece.node == node);
@@ -16,12 +16,12 @@ pub(super) fn looks(pieces: &[Piece], node: Node) -> impl Iterator<Item = Look> 
     Look::ALL.into_iter().filter(is_present)
 }
 
-/// The file's name of the parts of a body that have a look.
+/// The name of the mesh file of those parts of a body that have this look.
 pub(super) fn file(node: Node, look: Look) -> String {
     format!("{}-{}.stl", node.identifier(), look.name)
 }
 
-/// The meshes of all bodies, mm, in the frames of the bodies.
+/// The mesh files of all bodies, mm, each in the frame of its body.
 pub(super) fn files(pieces: &[Piece], nodes: &[Node]) -> Vec<File> {
     let mut files = Vec::new();
     for &node in nodes {

@@ -1,20 +1,18 @@
 //! The robot as a model for physics engines and for ROS: MJCF, URDF and SDF.
 //!
-//! Every part of the assembly becomes part of a rigid body, with the mass and the inertia
-//! of its own volume, at its place in the assembly. Hinges and slides join the bodies as
-//! pins and sleeves do. MJCF and URDF want a tree, so each closed loop is cut at one of its
-//! joints (`closed.rs`), which MJCF and SDF close again. The files know nothing of walking. MJCF,
-//! by which an independent engine lets the robot walk, has motors and a floor, too.
+//! Every part of the assembly becomes part of a rigid body, with the mass and the inertia of its own volume, at its
+//! place in the assembly. Hinges and slides join the bodies as pins and sleeves do. MJCF and URDF require a tree,
+//! so each closed loop is cut at one of its joints (`closed.rs`); MJCF and SDF close it again. The files contain no
+//! gait logic. MJCF, with which an independent engine lets the robot walk, also has motors and a floor.
 //!
 //! # Simplifications
-//! - Only pads and floor touch each other. A separate proof shows that no two parts meet
-//!   ([`crate::Proof`]).
-//! - A foot's leaf lets its post move straight up and down on a spring. Links do not bend.
-//! - A servo is a motor whose torque falls with its speed, with a rotor, and with a gain that
-//!   applies the full torque at a few degrees of error, as `[servo]` has them. It has no dead band.
-//! - The friction of all pins that a servo turns acts at its link.
-//! - The friction of the pads is equal in all directions, as MuJoCo has it. Its file says by how much
-//!   that of the robot's pads is larger backward, and `tools/physics/grain.py` sees to it.
+//! - Only pads and floor touch each other. A separate proof shows that no two parts collide ([`crate::Proof`]).
+//! - A foot's leaf spring lets its post move straight up and down. Links do not bend.
+//! - A servo is a motor with a rotor, whose torque falls with its speed. Its gain applies the full torque at a few
+//!   degrees of error, as `[servo]` states. It has no dead band.
+//! - The friction of all pins that a servo moves acts at the servo's link.
+//! - The pads' friction is equal in all directions, as in MuJoCo. The file states the ratio of backward to forward
+//!   friction of the robot's pads, and `tools/physics/grain.py` applies it.
 
 mod closed;
 mod floor;
@@ -51,15 +49,15 @@ pub fn mjcf(assembly: &Assembly, neutral: &Solution, scene: &Scene) -> Result<St
     Ok(Pieces::of(assembly, scene)?.mjcf(neutral, scene))
 }
 
-/// The shapes and masses of a robot, shared by several files because they take far longer
-/// to make than the rest.
+/// The shapes and masses of a robot. Several files share them, because they take far longer to compute than the
+/// rest.
 pub struct Pieces<'a> {
     assembly: &'a Assembly,
     pieces: Vec<Piece>,
 }
 
 impl<'a> Pieces<'a> {
-    /// Makes the shapes and masses for a scene.
+    /// Computes the shapes and masses for a scene.
     ///
     /// # Errors
     /// Fails as [`mjcf`] does.
@@ -68,15 +66,14 @@ impl<'a> Pieces<'a> {
         Ok(Self { assembly, pieces })
     }
 
-    /// The file for MuJoCo of a scene whose struts and play equal those of the scene that was given
-    /// to [`Pieces::of`].
+    /// The file for MuJoCo of a scene. Its struts and play must equal those of the scene given to [`Pieces::of`].
     #[must_use]
     pub fn mjcf(&self, neutral: &Solution, scene: &Scene) -> String {
         self.write_with(neutral, scene, |writer| writer.write_mjcf())
     }
 
-    /// The robot of such a scene as URDF, whose meshes ([`Pieces::meshes`]) lie in `folder`: a path
-    /// or an address with a slash at its end.
+    /// The robot of such a scene as URDF. Its meshes ([`Pieces::meshes`]) are in `folder`: a path or a URL that
+    /// ends with a slash.
     #[must_use]
     pub fn urdf(&self, neutral: &Solution, scene: &Scene, folder: &str) -> String {
         self.write_with(neutral, scene, |writer| writer.write_urdf(folder))
@@ -88,7 +85,7 @@ impl<'a> Pieces<'a> {
         self.write_with(neutral, scene, |writer| writer.write_sdf(folder))
     }
 
-    /// The meshes that URDF and SDF name, by the names that they have in their folder.
+    /// The meshes to which URDF and SDF refer, each with its file name in the mesh folder.
     #[must_use]
     pub fn meshes(&self, scene: &Scene) -> Vec<File> {
         let nodes = Node::all(scene.pull.is_some(), scene.play > 0.0);

@@ -1,4 +1,4 @@
-//! The bodies of the file: the parent of each, and its motion on the parent.
+//! Rigid bodies of the model: the parent of each, and its motion on the parent.
 //!
 //! They are a tree: each closed loop of the robot is cut at one of its joints (`closed.rs`).
 
@@ -7,10 +7,10 @@ use lizard_robot::servo::{LEGS, NAMES};
 
 use crate::layers::body::Mount;
 
-/// A rigid body of the file.
+/// A rigid body of the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Node {
-    /// All bodies on one of the robot's mounts.
+    /// All bodies on one of the assembly's mounts.
     Of(Mount),
     /// The horn of a servo that has play between horn and link.
     Horn(usize),
@@ -20,12 +20,12 @@ pub(crate) enum Node {
     Slot(usize),
 }
 
-/// The motion of a body on its parent.
+/// The degree of freedom of a body on its parent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Freedom {
     /// Free in space.
     Free,
-    /// Turning about an upright axis through its origin.
+    /// Turning about a vertical axis through its origin.
     Turns,
     /// Sliding along its own x axis.
     Along,
@@ -89,7 +89,7 @@ impl Node {
         }
     }
 
-    /// The mount whose frame it uses.
+    /// The mount whose frame the node uses.
     pub fn frame(self) -> Mount {
         match self {
             Self::Of(mount) => mount,

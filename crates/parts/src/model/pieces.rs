@@ -1,4 +1,4 @@
-//! Shapes and masses of the parts, sorted by the bodies of the file.
+//! Shapes and masses of the parts, sorted by the rigid bodies of the model.
 
 use lizard_kinematics::Vector;
 use lizard_robot::servo::LEGS;
@@ -16,10 +16,11 @@ use crate::layers::shape::Shape;
 use crate::part::volume;
 use crate::unfit::Unfit;
 
-/// Radius of a foot's post about its middle, mm. Layers farther away are leaf and column.
+/// Radius of a foot's post about its middle, mm. Layers of the foot that are farther away belong to the leaf and
+/// the column.
 const POST: f64 = 8.0;
 
-/// Layers of one part that move with one body of the file.
+/// The layers of one part that move with one body of the model.
 pub(super) struct Piece {
     pub name: String,
     pub node: Node,
@@ -32,7 +33,7 @@ pub(super) fn pieces(assembly: &Assembly, scene: &Scene) -> Result<Vec<Piece>, U
     let slotted = scene.pull.is_some();
     let is_strut = |body: &&Body| matches!(body.mount, Mount::Strut(_));
     let has_spring = |bodies: &[Body]| bodies.iter().any(|body| body.kind == Kind::Spring);
-    // The scene may have the struts of the other kind.
+    // The scene may use the other kind of strut than the assembly does.
     let swap = has_spring(assembly.bodies()) != slotted;
     let own = assembly.bodies().iter();
     let own = own.filter(|body| !(swap && is_strut(body)));
@@ -65,7 +66,7 @@ pub(super) fn pieces(assembly: &Assembly, scene: &Scene) -> Result<Vec<Piece>, U
     Ok(pieces)
 }
 
-/// The spring of a strut of the other kind, as a bar of its coil's width from screw to screw.
+/// The spring of a slotted strut that the assembly does not draw: a bar as wide as the coil, from screw to screw.
 fn spring(assembly: &Assembly, servo: usize) -> Piece {
     let coil = assembly.robot().parts().spring;
     let length = assembly.layout().legs[servo].strut_length;
@@ -85,7 +86,7 @@ fn spring(assembly: &Assembly, servo: usize) -> Piece {
     }
 }
 
-/// The layers of a body, sorted by the body of the file that they move with; mostly one.
+/// Sorts the layers of a body by the model's body with which they move; mostly there is only one.
 fn shares(assembly: &Assembly, scene: &Scene, body: &Body) -> Vec<(Node, Vec<Prism>)> {
     let of = |node: Node| vec![(node, body.prisms.clone())];
     match body.mount {

@@ -1,4 +1,4 @@
-//! The robot as SDF, the format of Gazebo, with closed loops, without a floor.
+//! The robot as SDF, the format of Gazebo: with closed loops, without a floor.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -9,11 +9,11 @@ use crate::model::scene::Pull;
 use crate::model::text::{MILLI, escaped, metres, round};
 use crate::model::writer::Writer;
 
-/// The oldest version in which a pose may be relative to another link.
+/// The oldest version of SDF in which a pose may be relative to another link.
 const VERSION: &str = "1.7";
 
 impl Writer<'_> {
-    /// Writes the whole file, whose meshes lie in a folder or below an address.
+    /// Writes the whole file. The meshes are in `folder`, a path or a URL.
     pub(super) fn write_sdf(&mut self, folder: &str) {
         let name = escaped(&self.scene.name);
         self.xml.declaration();
@@ -27,7 +27,7 @@ impl Writer<'_> {
         }
         for closed in closed::all(self.assembly, self.scene.pull.is_some()) {
             let [first, second] = closed.bodies.map(Node::identifier);
-            // All axes are upright already. Two upright pins would hold what one holds.
+            // A ball is enough: all axes are vertical already, and a hinge would constrain their direction twice.
             self.write_sdf_connection(&closed.identifier(), "ball", &first, &second);
             let at = metres([closed.at.x, closed.at.y, 0.0]);
             let pose = format!(r#"pose relative_to="{first}""#);
@@ -46,7 +46,7 @@ impl Writer<'_> {
                 let pose = format!(r#"pose relative_to="{}""#, parent.identifier());
                 self.write_pose(&pose, [place.at.x, place.at.y, 0.0], turn);
             }
-            // The model's x is ahead, its y to the left.
+            // The model's x axis points ahead, its y axis to the left.
             None => self.write_pose("pose", [0.0, 0.0, self.height()], turn - FRAC_PI_2),
         }
         let mass = self.mass(node);
@@ -143,7 +143,7 @@ impl Writer<'_> {
         self.xml.close();
     }
 
-    /// The position at which the spring of a body's joint has no force, m, and its stiffness, N/m.
+    /// The position at which the spring of a body's joint is relaxed, m, and its stiffness, N/m.
     fn spring(&self, node: Node) -> Option<[f64; 2]> {
         match (node, self.scene.pull) {
             (Node::Pad(_), _) => Some([0.0, self.leaf()[0]]),
@@ -154,7 +154,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Begins a joint.
+    /// Opens the element of a joint.
     fn write_sdf_connection(&mut self, name: &str, kind: &str, parent: &str, child: &str) {
         self.xml
             .open(format!(r#"joint name="{name}" type="{kind}""#));

@@ -5,17 +5,17 @@ use std::fmt::{Display, Write};
 /// Metres per mm, kg per g.
 pub(super) const MILLI: f64 = 1e-3;
 
-/// A place in mm as metres.
+/// A position in mm, written in metres.
 pub(super) fn metres(at: [f64; 3]) -> String {
     at.map(|part| round(part * MILLI).to_string()).join(" ")
 }
 
-/// A number rounded to a billionth, without a minus before 0.
+/// Rounds a number to nine decimals, and turns -0 into 0.
 pub(super) fn round(value: f64) -> f64 {
     (value * 1e9).round() / 1e9 + 0.0
 }
 
-/// Numbers with blanks between them.
+/// Numbers separated by blanks.
 pub(super) fn joined(numbers: impl IntoIterator<Item = impl ToString>) -> String {
     let numbers: Vec<_> = numbers
         .into_iter()
@@ -24,13 +24,13 @@ pub(super) fn joined(numbers: impl IntoIterator<Item = impl ToString>) -> String
     numbers.join(" ")
 }
 
-/// A name as the value of an attribute.
+/// A name, escaped as the value of an attribute.
 pub(super) fn escaped(value: &str) -> String {
     let value = value.replace('&', "&amp;").replace('<', "&lt;");
     value.replace('"', "&quot;")
 }
 
-/// XML text, one element a line. An element is given as its name and attributes.
+/// XML text, one element per line. An element is given as its name and attributes.
 #[derive(Default)]
 pub(super) struct Xml {
     text: String,
@@ -60,7 +60,7 @@ impl Xml {
         self.line(format_args!("<{element}>{value}</{name}>"));
     }
 
-    /// Begins an element with children.
+    /// Opens an element with children.
     pub fn open(&mut self, element: impl Display) {
         let element = element.to_string();
         self.line(format_args!("<{element}>"));
@@ -68,14 +68,14 @@ impl Xml {
         self.open.push(name.to_owned());
     }
 
-    /// Ends the element that was begun last.
+    /// Closes the innermost open element.
     pub fn close(&mut self) {
         if let Some(name) = self.open.pop() {
             self.line(format_args!("</{name}>"));
         }
     }
 
-    /// The text, with all elements ended.
+    /// The text, after all open elements are closed.
     pub fn finish(mut self) -> String {
         while !self.open.is_empty() {
             self.close();

@@ -1,8 +1,8 @@
 //! The robot as URDF, the format of ROS: a tree of links, without a floor.
 //!
-//! A URDF cannot close a loop. The legs follow their servos exactly, as parallelograms do, so their
-//! joints mimic those of the servos. Couplers, sleeves and rods are free; a pair of frames
-//! at each joint where a loop is cut says which two points coincide.
+//! URDF cannot close a loop. The legs follow their servos exactly, as parallelograms do, so their joints mimic
+//! those of the servos. Couplers, sleeves and rods are free. At each joint where a loop is cut, a pair of frames
+//! marks the two points that must coincide.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -16,11 +16,11 @@ use crate::model::node::{Freedom, Node};
 use crate::model::text::{MILLI, escaped, metres, round};
 use crate::model::writer::Writer;
 
-/// The link on the floor under the chassis: x ahead, y to the left, z up, as ROS wants it.
+/// The link on the floor under the chassis: x ahead, y to the left, z up, as ROS requires.
 const BASE: &str = "base_link";
 
 impl Writer<'_> {
-    /// Writes the whole file, whose meshes lie in a folder or below an address.
+    /// Writes the whole file. The meshes are in `folder`, a path or a URL.
     pub(super) fn write_urdf(&mut self, folder: &str) {
         let name = escaped(&self.scene.name);
         self.xml.declaration();
@@ -79,7 +79,7 @@ impl Writer<'_> {
     fn write_urdf_joint(&mut self, node: Node) {
         let range = self.range(node);
         let kind = match (node.freedom(), range) {
-            // A URDF has no springs, on which the feet move.
+            // URDF has no springs, so the feet cannot move on theirs.
             (Freedom::Free | Freedom::Upright, _) => "fixed",
             (Freedom::Turns, Some(_)) => "revolute",
             (Freedom::Turns, None) => "continuous",
@@ -106,7 +106,7 @@ impl Writer<'_> {
                         let motor = &self.scene.motors.each[servo];
                         (motor.stall * MILLI, motor.rate.to_radians())
                     }
-                    // Nothing drives it.
+                    // No motor drives this joint.
                     None => (0.0, 0.0),
                 };
                 let (effort, rate) = (round(effort), round(rate));
@@ -127,7 +127,7 @@ impl Writer<'_> {
         self.xml.close();
     }
 
-    /// Begins a joint.
+    /// Opens the element of a joint.
     fn write_urdf_connection(&mut self, name: &str, kind: &str, parent: &str, child: &str) {
         self.xml
             .open(format!(r#"joint name="{name}" type="{kind}""#));
@@ -141,7 +141,7 @@ impl Writer<'_> {
             .leaf(format!(r#"origin xyz="{at}" rpy="0 0 {turn}""#));
     }
 
-    /// Writes the two frames of a joint that closes a loop: one on each body.
+    /// Writes the two frames of a joint that closes a loop, one on each body.
     fn write_coinciding_frames(&mut self, closed: &Closed) {
         let [first, second] = closed.bodies;
         let point = self.place(first).map(closed.at);
@@ -157,11 +157,11 @@ impl Writer<'_> {
     }
 }
 
-/// The servo whose angle a joint follows, and by which factor.
+/// The servo whose angle a joint follows, and the factor (1 or -1).
 fn follows(node: Node) -> Option<(usize, i8)> {
     match node {
         Node::Of(Mount::Crank(servo) | Mount::Follower(servo)) => Some((servo, 1)),
-        // They do not turn on the chassis.
+        // These keep their direction on the chassis, so they turn back on a parent that turns.
         Node::Of(Mount::Foot(servo) | Mount::Strut(servo)) => Some((servo, -1)),
         _ => None,
     }

@@ -1,4 +1,4 @@
-//! The writer that all formats share: the robot at neutral, as bodies on bodies.
+//! The writer that all formats share: the robot at neutral, as a tree of bodies.
 
 use lizard_kinematics::Solution;
 
@@ -26,7 +26,7 @@ pub(super) struct Writer<'a> {
 }
 
 impl<'a> Writer<'a> {
-    /// Every body, each after its parent.
+    /// All bodies, each after its parent.
     pub(super) fn nodes(&self) -> Vec<Node> {
         Node::all(self.scene.pull.is_some(), self.has_play())
     }
@@ -62,8 +62,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Height of the chassis frame, mm: the pads' undersides are on the floor, the longest foot's
-    /// too.
+    /// Height of the chassis frame, mm, at which the pad of the longest foot touches the floor.
     pub(super) fn height(&self) -> f64 {
         self.scene.long.into_iter().fold(0.0, f64::max) - self.assembly.stack().floor
     }
@@ -78,21 +77,22 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// The mass that lighter limbs have lost to the chassis, g.
+    /// The mass that the scene moves from the limbs to the chassis, g.
     fn limbs_lost(&self) -> f64 {
         let limbs = self.pieces.iter();
         let limbs = limbs.filter(|piece| self.parent(piece.node).is_some());
         (1.0 - self.scene.limbs) * limbs.map(|piece| piece.inertia.mass).sum::<f64>()
     }
 
-    /// The chassis of a robot that has the mass and the mass centre of `[body]`. What is not
-    /// drawn, such as wires, is in the plate's middle; then its parts are moved together.
+    /// The chassis, adjusted so that the whole robot has the mass and the mass centre of `[body]`. The mass of what
+    /// is not drawn, such as wires, is put at the plate's middle; then the chassis is shifted to correct the mass
+    /// centre.
     fn weighed(&self, drawn: &Inertia) -> Inertia {
         let body = self.assembly.robot().ground().body;
         let bill = Bill::of(self.assembly, &[], self.neutral);
         let bodies = self.assembly.bodies().iter();
         let parts: f64 = bodies.map(|body| bill::grams(body, self.assembly)).sum();
-        // For a robot that is lighter than its parts, half of the chassis stays.
+        // For a robot that is lighter than its parts, the chassis keeps half of its mass.
         let loose = (body.mass - parts).max(-drawn.mass / 2.0);
         let chassis = drawn.and(&Inertia::point(loose));
         let [ahead, left] =
@@ -108,8 +108,8 @@ impl<'a> Writer<'a> {
         [stiffness, damping].map(round)
     }
 
-    /// The middle of a pad's dome in the frame of its foot, mm: the ball of the dome touches the
-    /// floor, for above its rim there is nothing that touches.
+    /// The centre of a pad's dome in the frame of its foot, mm. A whole ball stands for the dome, since nothing
+    /// above its rim can touch the floor.
     pub(super) fn pad_middle(&self, servo: usize) -> [f64; 3] {
         let foot = self.assembly.layout().legs[servo].foot;
         let radius = self.assembly.robot().parts().pad.radius;

@@ -1,19 +1,18 @@
 //! A check that every screw can be put in and turned in the order of the guide.
 //!
-//! A screw is pushed in along its axis from the side of its head, so the space above its
-//! head must be free, as long as the screw and as wide as its head. A hex key holds the
-//! head while the nut is turned, so there must also be room for a [`KEY`] above the head.
-//! A socket goes over the nut and needs the room of a [`SOCKET`]. A nut that is sunk into
-//! a part is pushed in with a finger, and holds itself, as a hexagonal head does.
+//! A screw is pushed in along its axis from the side of its head. So the space above its head must be free, as long
+//! as the screw and as wide as its head. A hex key holds the head while the nut is turned, so a [`KEY`] must also
+//! fit above the head. A socket goes over the nut and needs the room of a [`SOCKET`]. A nut that is sunk into a
+//! part is pushed in with a finger; the part then keeps it from turning, as a pocket does for a hexagonal head.
 //!
-//! When a screw is turned, all bodies of the earlier stages are in place, and all of its
-//! own stage but the screw and its nut, so that the order within a stage does not matter.
-//! On the bench only those bodies count that the step has added to the same servo's link
-//! or leg. A screw whose nut comes in a later step is pushed in at its own stage, and
-//! turned when the nut comes. A pad moves with the screw in it, whose key goes through its hole.
+//! When a screw is turned, all bodies of the earlier stages are in place, and all bodies of its own stage except
+//! the screw and its nut. So the order within a stage does not matter. On the bench, only those bodies count that
+//! the step has added to the link or leg of the same servo. A screw whose nut comes in a later step is pushed in at
+//! its own stage, and turned when the nut comes. A pad moves with the screw in it; the key reaches that screw
+//! through the pad's hole.
 //!
-//! The servos stand at neutral. If a screw cannot be reached then, the nearest other pose
-//! that the guard accepts is searched, and the guide names it.
+//! The servos are at neutral. If a screw cannot be reached there, the nearest other pose that the guard accepts and
+//! that frees it is searched, and the guide names that pose.
 
 use std::fmt;
 
@@ -34,7 +33,7 @@ pub const SOCKET: [f64; 2] = [1.0, 10.0];
 const TURNS: [f64; 12] = [
     5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 55.0, 60.0,
 ];
-/// Grid of angles per servo for the search, if turning one servo is not enough.
+/// Number of angles per servo in the grid of poses that are searched if turning one servo is not enough.
 const STEPS: u32 = 9;
 
 /// An operation on a screw.
@@ -72,7 +71,7 @@ impl fmt::Display for ScrewOperation {
     }
 }
 
-/// A pose to turn the servos to so that some screws can be reached.
+/// A pose to which the servos are turned so that some screws can be reached.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AccessPose {
     /// The step of the guide, from 1.
@@ -83,7 +82,7 @@ pub struct AccessPose {
     pub pose: [f64; 4],
 }
 
-/// A space that has to be free: an upright prism over a shape, chassis frame.
+/// A space that must be free: a vertical prism over a shape, in the chassis frame.
 struct FreeSpace {
     shape: Shape,
     z: [f64; 2],
@@ -111,14 +110,14 @@ impl Axis {
     }
 }
 
-/// The robot at a pose while it is put together.
+/// The robot at a pose, in the course of its assembly.
 struct Bench<'a> {
     assembly: &'a Assembly,
     pose: &'a Solution,
 }
 
 impl Bench<'_> {
-    /// A screw's axis; `None` for other bodies.
+    /// The axis of a screw; `None` for other bodies.
     fn axis(&self, body: &Body) -> Option<Axis> {
         /// Length of a servo's own screws, mm.
         const SERVO_SCREW: f64 = 8.0;
@@ -141,7 +140,7 @@ impl Bench<'_> {
         })
     }
 
-    /// True if a body reaches into a space.
+    /// True if a body extends into a space.
     fn fills(&self, body: &Body, room: &FreeSpace) -> bool {
         /// Overlap that still counts as touching, mm.
         const TOUCH: f64 = 1e-6;
@@ -160,7 +159,7 @@ impl Bench<'_> {
         let place = self.assembly.place(nut.mount, self.pose);
         let flats = nut.prisms[0].add[0].placed(&place);
         let corner = (flats.points[0] - axis.at).length();
-        // The face that bears on the part, and the outer one.
+        // The face that touches the part, and the outer face.
         let [low, high] = nut.z();
         let (bears, end) = match axis.up > 0.0 {
             true => (high, low),
@@ -186,8 +185,8 @@ impl Bench<'_> {
         }
     }
 
-    /// The operations on a screw that are impossible when `new` bodies are added, each with
-    /// the body in the way.
+    /// The impossible operations on a screw when the bodies `new` are added, each with the name of the body in the
+    /// way.
     fn obstacles(
         &self,
         screw: &Body,
@@ -240,8 +239,7 @@ impl Bench<'_> {
 }
 
 impl Assembly {
-    /// The screws that cannot be inserted or turned in the order of these steps while the servos
-    /// are at a pose.
+    /// The screws that cannot be inserted or turned in the order of these steps, with the servos at a pose.
     pub fn blocked(&self, steps: &[Step], pose: &Solution) -> Vec<Blocked> {
         let bench = Bench {
             assembly: self,
@@ -283,11 +281,11 @@ impl Assembly {
         all_blocked
     }
 
-    /// The poses that servos have to be turned to in some steps so that every screw can be
-    /// reached; none if all can be at neutral.
+    /// The poses to which the servos must be turned in some steps so that every screw can be reached; empty if all
+    /// can be reached at neutral.
     ///
     /// # Errors
-    /// Fails for a screw that cannot be reached at any of the poses tried.
+    /// Fails for a screw that cannot be reached at any of the poses that are tried.
     pub fn access_poses(&self, steps: &[Step]) -> Result<Vec<AccessPose>, Blocked> {
         let mut access_poses: Vec<AccessPose> = Vec::new();
         let neutral = self.robot().neutral();
@@ -327,8 +325,8 @@ impl Assembly {
         Err(left.swap_remove(0))
     }
 
-    /// Poses that the guard accepts: first with one servo turned from neutral, by small
-    /// angles first; then others, the nearest first.
+    /// Poses that the guard accepts: first those with one servo turned from neutral, the smallest angle first, and
+    /// then the poses of a grid, the nearest to neutral first.
     fn poses_near(&self, neutral: Pose) -> Vec<Solution> {
         let from: [f64; 4] = neutral.into();
         let mut poses = Vec::new();

@@ -1,16 +1,14 @@
-//! The order in which the robot is put together, from the plate to the first walk.
+//! The steps of the assembly, from the plate to the first walk.
 //!
-//! A step is one picture of the guide. Within a step the hands do one thing after
-//! another, some of it on the bench before it is mounted on the robot. These are the
-//! stages of the step, and `reach.rs` checks which screws can be reached in which stage.
+//! A step is one picture of the guide. It has stages, done one after another: some of the work is done on the bench
+//! before it is mounted on the robot. `reach.rs` checks which screws can be reached in which stage.
 //!
-//! A servo does not report its angle. So it is wired and driven to its middle before its
-//! link is pressed on, and its direction is tested before anything joins the links: then
-//! a link that turns the wrong way moves only itself.
+//! A servo does not report its angle. So it is wired and driven to its middle before its link is pressed on, and
+//! its direction is tested before the links are joined: a link that turns the wrong way then moves nothing else.
 
 use crate::layers::body::{Body, Kind, Mount};
 
-/// The instructions of all steps, each under its title.
+/// The instructions of all steps, each below its title.
 const WORDS: &str = include_str!("steps.md");
 
 /// One step of the guide.
@@ -19,7 +17,7 @@ pub struct Step {
     pub title: &'static str,
     /// The instructions, as Markdown with each paragraph in one line.
     pub words: String,
-    /// The bodies to add and the screws to turn, in stages; none for a step at the console.
+    /// The bodies to add and the screws to turn, in stages; empty for a step at the console.
     pub stages: Vec<Stage>,
     /// Lift of a body in the exploded picture, as a share.
     pub lift: fn(&Body) -> f64,
@@ -42,18 +40,18 @@ pub enum ExtraView {
 
 /// Bodies that are added together.
 pub struct Stage {
-    /// The place where its screws are turned.
+    /// The place where the stage's screws are turned.
     pub at: TurningPlace,
     /// True for a body that the stage adds, unless an earlier stage has added it.
     pub adds: fn(&Body) -> bool,
-    /// True for a screw that was added before and is turned again.
+    /// True for a screw that an earlier stage added and that is turned again.
     pub turns: fn(&Body) -> bool,
 }
 
 /// The place where the screws of a stage are turned.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum TurningPlace {
-    /// On the robot, among all bodies added before.
+    /// On the robot, among all bodies added so far.
     Robot,
     /// On the bench, among the bodies of the same servo that this step has added.
     Bench,
@@ -66,8 +64,7 @@ impl Step {
     }
 }
 
-/// The step in which a body is added and the stage of that step, each from 1; zeros for a body
-/// that none adds.
+/// The numbers of the step and of the stage, each from 1, in which a body is added; zeros if no step adds it.
 pub(crate) fn place_in(steps: &[Step], body: &Body) -> (usize, usize) {
     for (step, of) in (1..).zip(steps) {
         if let Some(stage) = of.stages.iter().position(|stage| (stage.adds)(body)) {
@@ -94,7 +91,7 @@ fn stage(at: TurningPlace, adds: fn(&Body) -> bool) -> Stage {
     Stage { at, adds, turns }
 }
 
-/// A step with the instructions that stand under its title.
+/// A step with the instructions from `steps.md` below its title.
 fn step(title: &'static str, lift: fn(&Body) -> f64, near: ExtraView, stages: Vec<Stage>) -> Step {
     let mut sections = WORDS
         .split("## ")

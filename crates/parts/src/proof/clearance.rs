@@ -1,8 +1,8 @@
-//! The least distances between parts at given poses.
+//! The smallest distances between parts at given poses.
 //!
-//! Two parts can meet only at a height that they share, so pairs of layers are chosen once
-//! by height, and at each pose their shapes are measured from above. Holes are ignored, so
-//! the true distance is never smaller than the one found here.
+//! Two parts can collide only at a height that they share. So pairs of layers are chosen once by height, and at
+//! each pose the plan views of their shapes are measured. Holes are ignored, so the true distance is never smaller
+//! than the one found here.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -23,7 +23,7 @@ pub struct Clearance {
     pub second: String,
     /// Servo angles at the least distance, deg, servo order.
     pub pose: [f64; 4],
-    /// The distance, mm; below 0 they overlap.
+    /// The distance, mm; negative if they overlap.
     pub mm: f64,
 }
 
@@ -43,14 +43,13 @@ impl fmt::Display for Clearance {
 }
 
 impl Assembly {
-    /// Pairs of bodies that come nearer than `within` mm at some poses, the nearest first,
-    /// each pair once.
+    /// Pairs of bodies that come closer than `within` mm at some pose, the nearest first, each pair once.
     pub fn nearest(
         &self,
         poses: impl IntoIterator<Item = Solution>,
         within: f64,
     ) -> Vec<Clearance> {
-        // Each pair of shapes, with its bodies and a disc around each shape.
+        // The pairs of shapes, each with the indices of its bodies and an enclosing disc around each shape.
         let disc = |shape: &Shape| (shape.middle(), shape.farthest(shape.middle()));
         let bodies = self.bodies();
         let mut pairs = Vec::new();

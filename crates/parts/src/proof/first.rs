@@ -1,10 +1,9 @@
 //! A quick check at a few poses before the proof.
 //!
-//! A robot that does not fit at all has hundreds of parts that meet, and bounding each of
-//! them takes minutes. But one pose at which two parts meet is enough to refuse it. So the
-//! parts are checked first at poses where they are likely to meet: at neutral, on a coarse
-//! grid, and at the limits of the guard in every direction from neutral. If some parts
-//! meet, only the worst are bounded.
+//! In a robot that does not fit, hundreds of pairs of parts may collide, and bounding the distance of each takes
+//! minutes. But one pose at which two parts collide is enough to refuse the robot. So the parts are first checked
+//! at poses where collisions are likely: at neutral, on a coarse grid, and at the limits of the guard in every
+//! direction from neutral. If some pairs are too near there, only the worst are bounded.
 
 use lizard_kinematics::Solution;
 use lizard_robot::Robot;
@@ -12,14 +11,14 @@ use lizard_robot::Robot;
 use super::shape_pairs::Task;
 use crate::bodies::assembly::Assembly;
 
-/// Angles of each servo on the grid.
+/// Number of angles per servo on the grid.
 const STEPS: u32 = 6;
 /// Halvings in the search for a limit of the guard.
 const HALVINGS: usize = 12;
-/// The number of meeting pairs that are bounded.
+/// The number of colliding pairs whose distance is bounded.
 const WORST: usize = 3;
 
-/// The tasks whose parts overlap most; `None` if no parts meet at any of the poses.
+/// The tasks whose parts come nearest, of those whose parts come too near; `None` if none do at any of the poses.
 pub fn worst(assembly: &Assembly, tasks: &[Task]) -> Option<Vec<Task>> {
     let robot = assembly.robot();
     let mut poses: Vec<Solution> = robot.accepted(robot.neutral().into()).into_iter().collect();
@@ -37,7 +36,7 @@ pub fn worst(assembly: &Assembly, tasks: &[Task]) -> Option<Vec<Task>> {
     (!too_near.is_empty()).then_some(too_near)
 }
 
-/// The least distance of a task's parts at a pose, mm; infinite if they are far enough apart.
+/// The least distance of a task's parts at a pose, mm; infinite if they are certainly far enough apart.
 fn distance(assembly: &Assembly, task: &Task, pose: &Solution) -> f64 {
     let [a, b] = task.mounts.map(|mount| assembly.place(mount, pose));
     let place = b.seen_from(&a);
@@ -47,8 +46,8 @@ fn distance(assembly: &Assembly, task: &Task, pose: &Solution) -> f64 {
     distances.fold(f64::INFINITY, f64::min)
 }
 
-/// The last pose that the guard accepts on the way from neutral in one of 81
-/// directions: each servo towards one end of its travel, the other, or neither.
+/// The last pose that the guard accepts on the line from neutral in one of 81 directions: each servo turns toward
+/// one end of its travel, toward the other, or not at all.
 fn edge(robot: &Robot, direction: u32) -> Option<Solution> {
     let from: [f64; 4] = robot.neutral().into();
     let ends = [0, 1, 2, 3].map(|servo| {

@@ -1,8 +1,8 @@
-//! The poses that the guard accepts, as bounds of the servos' angles.
+//! The poses that the guard accepts, as bounds on the servos' angles.
 //!
-//! [`Limits`] says what a safe pose is; this module only uses it. The firmware decides in
-//! integers, and may differ within a band ([`SINE`], [`LENGTH`]). The limits are relaxed
-//! by that band, so the proof also covers every pose that the firmware accepts.
+//! [`Limits`] defines a safe pose; this module only applies it. The firmware decides in integers, so it may decide
+//! otherwise within a band around each limit ([`SINE`], [`LENGTH`]). The limits are relaxed by more than that band,
+//! so the proof also covers every pose that the firmware accepts.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -13,14 +13,14 @@ use super::interval::Interval;
 use super::slope::Slope;
 use crate::bodies::joints::Cranks;
 
-/// Relaxation of the margins' limits, a sine.
+/// Relaxation of the margins' limits, as a sine.
 const SINE: f64 = 0.005;
-/// Type-2 limit below which the relaxation grows in proportion: the nearer couplers are
-/// to one line, the more a rounded length turns them.
+/// Type-2 limit below which the relaxation grows in proportion: the closer two couplers are to alignment, the more
+/// a rounded length turns them.
 const TYPE2: f64 = 0.3;
 /// Relaxation of a slider's stroke and of crossed crank tips, mm.
 const LENGTH: f64 = 0.1;
-/// Resolution of the ends of a servo's range, deg.
+/// Resolution of the ends of a servo's range in [`Guard::end_of`], deg.
 const FINE: f64 = 0.01;
 /// Resolution of the other servo's angle there, deg.
 const COARSE: f64 = 0.2;
@@ -33,7 +33,7 @@ pub fn ordered(value: f64) -> i64 {
     bits ^ (((bits >> 63) as u64) >> 1) as i64
 }
 
-/// A box of angles of `N` servos: middles and half widths, deg.
+/// A box of angles of `N` servos: centres and half widths, deg.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Region<const N: usize> {
     pub middle: [f64; N],
@@ -50,7 +50,7 @@ impl<const N: usize> Region<N> {
         }
     }
 
-    /// The region's two halves, cut across one servo's angle.
+    /// The region's two halves, split at the middle of one servo's angle.
     pub fn halves(&self, servo: usize) -> [Self; 2] {
         [-0.5, 0.5].map(|share| {
             let mut part = *self;
@@ -67,7 +67,7 @@ impl<const N: usize> Region<N> {
     }
 }
 
-/// Cranks at some angles; those of other servos are meaningless.
+/// Cranks at some angles. The cranks of other servos get a dummy direction.
 fn turned<'a, const N: usize, T: Real>(
     robot: &'a Robot,
     servos: &[usize; N],
@@ -109,7 +109,7 @@ impl<'a> Guard<'a> {
                 Interval::new(servo.neutral + low, servo.neutral + high)
             }),
         };
-        // Twice, because the range of one pair depends on the pairs beside it.
+        // Two passes, because the range of one pair depends on the neighbouring pairs.
         for _ in 0..2 {
             let ends = End::ALL.map(|end| end.servos());
             for pair in ends.into_iter().chain(Side::ALL.map(|side| side.servos())) {
@@ -122,13 +122,12 @@ impl<'a> Guard<'a> {
         guard
     }
 
-    /// The angle of one of two servos beyond which no pose is accepted, at any angle of the
-    /// other servo.
+    /// The angle of one servo of a pair beyond which no pose is accepted, at any angle of the other servo.
     fn end_of(&self, pair: [usize; 2], index: usize, is_high: bool) -> f64 {
         let sign = if is_high { -1.0 } else { 1.0 };
         let end = |region: &Region<2>| region.middle[index] - sign * region.half[index];
         let whole = Region::of(pair.map(|servo| self.ranges[servo]));
-        // The least end comes first, and of equal ones the first that was found.
+        // The region with the least end comes first; among equal ones, the one that was found first.
         let (mut regions, mut count) = (BTreeMap::from([((0, 0), whole)]), 0);
         while let Some((_, region)) = regions.pop_first() {
             if self.refuses(&pair, &region) {
@@ -145,17 +144,17 @@ impl<'a> Guard<'a> {
                 regions.insert((ordered(sign * end(&half)), count), half);
             }
         }
-        // Nothing is accepted at all; a robot whose neutral pose is safe has something.
+        // The guard refuses every pose. This is not reached if the neutral pose is safe.
         end(&whole)
     }
 
-    /// True if the conditions that these servos decide alone refuse every pose of a region.
+    /// True if the conditions that depend only on these servos refuse every pose of a region.
     pub fn refuses<const N: usize>(&self, servos: &[usize; N], region: &Region<N>) -> bool {
         self.cranks(servos, region).is_none()
     }
 
-    /// The cranks of some servos within a region and in its middle; `None` if the conditions
-    /// that these servos decide alone refuse every pose of it.
+    /// The cranks of some servos within a region and at its middle; `None` if the conditions that depend only on
+    /// these servos refuse every pose of the region.
     pub fn cranks<const N: usize>(
         &self,
         servos: &[usize; N],
@@ -171,7 +170,7 @@ impl<'a> Guard<'a> {
         };
         let all =
             |servos_needed: [usize; 2]| servos_needed.iter().all(|servo| servos.contains(servo));
-        // A leg's margin depends on the crank's direction alone, not on the angle.
+        // A leg's margin depends only on the crank's direction, not on the angle.
         let (leg, none) = (&self.robot.lizard().leg, Slope::of(0.0));
         let legs = servos.iter().any(|&servo| {
             let end = End::of_servo(servo);
@@ -195,7 +194,7 @@ impl<'a> Guard<'a> {
 
     /// The relaxed limit that a value breaks, if any.
     fn broken(&self, check: Check, value: f64) -> Option<f64> {
-        // Crossed tips have no limit that could be relaxed.
+        // The limit of crossed tips is 0 and no field of `Limits`, so the value is shifted instead.
         let slack = match check {
             Check::UncrossedHead | Check::UncrossedTail => LENGTH,
             _ => 0.0,
@@ -205,8 +204,8 @@ impl<'a> Guard<'a> {
             .map(|violation| violation.limit)
     }
 
-    /// A pose in which some servos have given angles and which the guard accepts with its
-    /// unrelaxed limits; `None` if none is found.
+    /// A pose with the given angles of some servos that the guard accepts with its unrelaxed limits; `None` if the
+    /// search finds none.
     pub fn pose(&self, angles: [Option<f64>; 4]) -> Option<Solution> {
         const ALL: [usize; 4] = [0, 1, 2, 3];
         let or = |bound_of: fn(&lizard_robot::Servo) -> f64| {
@@ -239,11 +238,11 @@ impl<'a> Guard<'a> {
 mod tests {
     use super::*;
 
-    /// Largest error of the firmware's integers, a sine and mm: docs/firmware.md.
+    /// Largest error of the firmware's integers, as a sine and in mm: docs/firmware.md.
     const BAND: f64 = 0.002;
     const STEPS: f64 = 4.0 / 256.0;
 
-    /// A robot of `robots/`, or the paper's with all limits but the type-2 one lifted.
+    /// A robot of `robots/`. "At its type-2 limit": the paper's robot with all limits except the type-2 one lifted.
     fn robot(name: &str) -> Robot {
         let file = name.trim_end_matches(" at its type-2 limit");
         let path = format!("{}/../../robots/{file}.toml", env!("CARGO_MANIFEST_DIR"));
@@ -262,7 +261,7 @@ mod tests {
         Robot::parse(&text).expect(name)
     }
 
-    /// The robot's limits, relaxed by the largest error of the integers.
+    /// The robot's limits, relaxed by the largest error of the firmware's integers.
     fn lax(robot: &Robot) -> Limits {
         let limits = robot.limits();
         Limits {
@@ -274,7 +273,7 @@ mod tests {
         }
     }
 
-    /// Each limit is tried by itself: some, as that of crossed tips, are never reached first.
+    /// Each limit is tried by itself, because some, such as that of crossed tips, are never the first to be broken.
     #[test]
     fn every_limit_is_relaxed_by_more_than_the_firmware_may_be_off() {
         for name in ["paper", "large", "unequal", "paper at its type-2 limit"] {
@@ -312,7 +311,7 @@ mod tests {
                 Ok(solution) => lax.violations(&solution).map(|of| Some(of.what)).next(),
                 Err(_) => Some(None),
             };
-            // To either side with each servo, each pair and all of them.
+            // Directions: each servo turns to one side, to the other, or not at all.
             for ways in 0..81 {
                 let way = [1, 3, 9, 27].map(|part| f64::from(ways / part % 3) - 1.0);
                 for share in [[1.0; 4], [1.0, 0.4, 0.7, 0.2], [0.2, 0.7, 0.4, 1.0]] {

@@ -1,17 +1,17 @@
-//! Numbers that are known to lie between two bounds.
+//! Interval arithmetic: numbers that are known to lie between two bounds.
 //!
-//! Every result is rounded outward by a step, so the bounds hold for the exact result,
-//! too. Existing crates need a compiler for the newest processors (inari, for its
-//! rounding modes) or have no sines, and both would need a wrapper to be a [`Real`].
+//! Every result is rounded outward by one step, so the bounds also hold for the exact result. Existing crates
+//! require compiling for the newest processors (inari, for its rounding modes) or have no sines, and both would
+//! need a wrapper to implement [`Real`].
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use lizard_kinematics::{Real, sin_cos};
 
-/// A bound of the error of a computed sine, which is 1.5 units in the last place.
+/// An upper bound of the error of a computed sine, which is 1.5 units in the last place.
 const SINE: f64 = 1e-15;
 
-/// All numbers from one to another.
+/// All numbers from `low` to `high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
     /// The lower bound.
@@ -32,17 +32,17 @@ impl Interval {
         Self { low, high }
     }
 
-    /// The largest absolute value in it.
+    /// The largest absolute value in the interval.
     pub fn most(self) -> f64 {
         self.low.abs().max(self.high.abs())
     }
 
-    /// The intersection with another interval that holds the same number.
+    /// The intersection with another interval that contains the same number.
     pub fn and(self, other: Self) -> Self {
         Self::new(self.low.max(other.low), self.high.min(other.high))
     }
 
-    /// Bounds of a result from rounded bounds; all numbers if these are not numbers.
+    /// Rounds computed bounds outward. Returns all numbers if a bound is NaN.
     fn outward(low: f64, high: f64) -> Self {
         if low.is_nan() || high.is_nan() {
             return Self::ALL;
@@ -51,7 +51,7 @@ impl Interval {
     }
 
     fn sine_and_cosine(self) -> (Self, Self) {
-        // True if the interval, or its rounding, holds an angle at which a sine is 1 or -1.
+        // True if the interval, slightly widened, contains an angle at which the sine or cosine has an extreme.
         let passes = |angle: f64| {
             let turns = ((self.low - angle) / 360.0 - 1e-9).ceil();
             turns * 360.0 + angle <= self.high + 1e-6
@@ -85,7 +85,7 @@ operators! {
         let low = [self.low * other.low, self.low * other.high];
         let high = [self.high * other.low, self.high * other.high];
         let ([a, b], [c, d]) = (low, high);
-        // 0 times infinity is no number, and must not get lost in min and max.
+        // 0 times infinity is NaN, which min and max would hide.
         if (a + b + c + d).is_nan() {
             return Self::ALL;
         }
@@ -95,7 +95,7 @@ operators! {
         let (a, b) = (self.low * factor, self.high * factor);
         Self::outward(a.min(b), a.max(b))
     }
-    // A quotient is a product with a reciprocal, whose own rounding is outward, too.
+    // A quotient is a product with the reciprocal, which is itself rounded outward.
     Div div(self, other: Self) {
         if other.low <= 0.0 && other.high >= 0.0 {
             return Self::ALL;

@@ -1,9 +1,9 @@
-//! Branch and bound: the least distance in a region, with proof.
+//! Branch and bound: the least distance in a region, with a proven lower bound.
 //!
-//! The region is halved again and again, always where the distance may be least. In
-//! each part the distance in the middle, less what all points can move from there, is
-//! less than every distance in the part; the distance at any pose is no less than the
-//! least one. Where both meet, the least distance is known.
+//! The region is halved again and again, always in the part where the distance may be least. In each part, the
+//! distance at the middle less the largest motion of all points from there is a lower bound of every distance in
+//! the part. The distance at any accepted pose is an upper bound of the least distance. When both bounds meet, the
+//! least distance is known.
 
 use std::collections::BTreeMap;
 
@@ -19,16 +19,16 @@ use crate::layers::placement::Placement;
 pub const ENOUGH: f64 = 2.0;
 /// A bound of the rounding error of a distance, mm.
 const ROUNDING: f64 = 1e-6;
-/// Tolerance between lower and upper bound at which the search ends, mm and as a share.
+/// Difference between lower and upper bound at which the search ends: in mm, and as a share of the distance.
 const TOLERANCE: f64 = 0.01;
 const SHARE: f64 = 0.05;
-/// The share for parts made to meet, of which only the sign of the gap matters.
+/// The share for parts designed to touch, for which only the sign of the gap matters.
 const SHARE_MEETING: f64 = 0.5;
-/// Regions narrower than this are not halved, deg.
+/// Half width below which regions are not halved, deg.
 const MIN_HALF_WIDTH: f64 = 0.002;
 /// The largest number of regions checked.
 pub const MAX_REGIONS: u64 = 100_000;
-/// The largest number once an overlap is known: its exact depth does not matter.
+/// The largest number of regions once an overlap is found: its exact depth does not matter.
 const MAX_REGIONS_OVERLAPPING: u64 = 1_000;
 
 /// The result of a search for the least distance.
@@ -38,29 +38,29 @@ pub struct Found {
     pub proved: f64,
     /// The two nearest bodies.
     pub bodies: [usize; 2],
-    /// A pose that the guard accepts, and the distance there, mm.
+    /// The accepted pose with the least distance found, and that distance, mm.
     pub seen: Option<(Solution, f64)>,
-    /// Angles of some servos, deg, in the middle of the region that limits the bound, if
-    /// the bound is less than the distance seen.
+    /// Angles of some servos, deg, at the middle of the region that limits the bound; only if the bound is less
+    /// than the distance in `seen`.
     pub doubt: Option<[Option<f64>; 4]>,
     /// Number of regions checked.
     pub regions: u64,
 }
 
-/// A region, and the solids that may be near in it.
+/// A region, and the pairs of shapes that may be near each other in it.
 struct Part<const N: usize> {
     region: Region<N>,
-    /// Lower bound of all distances in it, mm.
+    /// Lower bound of all distances in the region, mm.
     low: f64,
-    /// The solid with that bound.
+    /// The index of the pair of shapes with that bound.
     by: u32,
-    /// The servo across whose angle it is to be halved.
+    /// The servo across whose angle the region is to be halved.
     across: usize,
     alive: Vec<u32>,
 }
 
-/// The least distance of a task's solids over all poses that the guard accepts, from
-/// this many regions at `max`.
+/// The least distance of a task's pairs of shapes over all poses that the guard accepts, from at most `max`
+/// regions.
 pub fn least(assembly: &Assembly, guard: &Guard, task: &Task, max: u64) -> Found {
     match task.servos()[..] {
         [] => search(assembly, guard, task, [], max),
@@ -95,7 +95,7 @@ struct Search<'a, const N: usize> {
     guard: &'a Guard<'a>,
     task: &'a Task,
     servos: [usize; N],
-    /// The least distance seen at an accepted pose, and the solid that has it.
+    /// The accepted pose with the least distance found, and that distance. `by` is the index of the pair of shapes.
     seen: Option<(Solution, f64)>,
     by: u32,
     regions: u64,
@@ -111,7 +111,7 @@ impl<const N: usize> Search<'_, N> {
         let all_poses = Region::of(self.servos.map(|servo| self.guard.ranges[servo]));
         let all: Vec<u32> = (0..self.task.shape_pairs.len() as u32).collect();
         let share = if self.task.meet { SHARE_MEETING } else { SHARE };
-        // The least bound comes first; regions break ties, so the order is always the same.
+        // The part with the least bound comes first. Regions break ties, so the order is always the same.
         let key = |part: &Part<N>| (ordered(part.low), part.region.middle.map(ordered));
         let first = self.look(all_poses, &all).into_iter();
         let mut parts: BTreeMap<_, _> = first.map(|part| (key(&part), part)).collect();
@@ -149,7 +149,7 @@ impl<const N: usize> Search<'_, N> {
         }
     }
 
-    /// The middle of a region, servo order.
+    /// The angles at the middle of a region, in servo order.
     fn angles(&self, region: &Region<N>) -> [Option<f64>; 4] {
         let mut angles = [None; 4];
         for (servo, angle) in self.servos.iter().zip(region.middle) {
@@ -158,12 +158,12 @@ impl<const N: usize> Search<'_, N> {
         angles
     }
 
-    /// Bounds a region's distances; `None` if nothing can be nearer than the distance seen
-    /// already, or if the guard accepts no pose.
+    /// Bounds a region's distances. Returns `None` if no pair can be nearer than the least distance found so far,
+    /// or if the guard accepts no pose.
     fn look(&mut self, region: Region<N>, alive: &[u32]) -> Option<Part<N>> {
         self.regions += 1;
         let (bounds, middle) = self.guard.cranks(&self.servos, &region)?;
-        // The first and the second mount's place: in the middle, and anywhere.
+        // The placements of both mounts: at the region's middle, and bounds for the whole region.
         let [(a, around_a), (b, around_b)] = self.task.mounts.map(|mount| {
             let place = self.assembly.place_on(mount, &middle);
             let bounds = self.assembly.place_on(mount, &bounds);
@@ -216,7 +216,7 @@ impl<const N: usize> Search<'_, N> {
     }
 }
 
-/// Bounds of a place, tightened by its value in the middle and the distance it can stray.
+/// Tightens the bounds of a placement by its value at the middle and its largest change from there.
 fn tighten<const N: usize>(
     bounds: &Placement<Slope<N>>,
     middle: &Placement,
@@ -232,16 +232,16 @@ fn tighten<const N: usize>(
     }
 }
 
-/// The servo that a place depends on most.
+/// The servo on which a placement depends most.
 fn across<const N: usize>(bounds: &Placement<Slope<N>>, region: &Region<N>) -> usize {
-    /// The length at which a turn is counted, mm.
+    /// The lever arm by which a rotation is converted into a distance, mm.
     const LEVER_MM: f64 = 30.0;
     let (at, turn) = (bounds.at, bounds.turn * LEVER_MM);
     let numbers = [at.x, at.y, turn.x, turn.y];
     let weight = |servo: usize| {
         let half = region.half[servo];
         numbers.iter().fold(0.0, |sum, number| {
-            // Without a bound, the widest angle is halved.
+            // Without a finite bound, the widest angle is halved.
             let strays = number.slope[servo].most() * half;
             sum + if strays.is_finite() {
                 strays

@@ -1,8 +1,7 @@
-//! The pairs of shapes that have to keep clear of each other, sorted by mounts.
+//! The pairs of shapes that must stay clear of each other, grouped by mounts.
 //!
-//! A layer is the union of its shapes less its holes. A shape is clear of a layer if it is
-//! beside the layer's shapes, or within one of its holes, as a pin is. The larger of the
-//! two distances counts.
+//! A layer is the union of its shapes minus its holes. A shape is clear of a layer if it is beside the layer's
+//! shapes, or within one of its holes, as a pin is. The larger of the two distances counts.
 
 use lizard_kinematics::Vector;
 
@@ -14,7 +13,7 @@ use crate::layers::body::{Body, Mount, Prism};
 use crate::layers::placement::Placement;
 use crate::layers::shape::Shape;
 
-/// Difference below which heights count as equal, mm.
+/// Tolerance within which heights count as equal, mm.
 const SAME_HEIGHT_MM: f64 = 1e-6;
 
 /// A pair of shapes of two bodies.
@@ -22,19 +21,19 @@ const SAME_HEIGHT_MM: f64 = 1e-6;
 pub struct ShapePair {
     /// The bodies, by their index in [`Assembly::bodies`].
     pub bodies: [usize; 2],
-    /// Gap between their heights, mm; 0 if they share one.
+    /// Vertical gap between the shapes, mm; 0 if their heights overlap.
     gap: f64,
     /// The first shape, in the first mount's frame.
     first: Shape,
     /// The second shape, in the second mount's frame.
     second: Shape,
-    /// Discs around the two: centre and radius.
+    /// Enclosing discs of both shapes: centre and radius.
     discs: [(Vector, f64); 2],
-    /// Largest distance of the second's points from its frame's origin, mm.
+    /// Largest distance of the second shape's points from the origin of its frame, mm.
     lever: f64,
-    /// Holes of the second's layer that may hold the first.
+    /// Holes of the second shape's layer that may hold the first shape.
     around_first: Vec<Shape>,
-    /// Holes of the first's layer that may hold the second.
+    /// Holes of the first shape's layer that may hold the second shape.
     around_second: Vec<Shape>,
 }
 
@@ -42,18 +41,18 @@ pub struct ShapePair {
 #[derive(Clone, Debug)]
 pub struct Task {
     pub mounts: [Mount; 2],
-    /// True if these are pairs that are made to meet.
+    /// True if these are pairs that are designed to touch.
     pub meet: bool,
     pub shape_pairs: Vec<ShapePair>,
 }
 
 impl Task {
-    /// Least distance that its pairs must keep, mm.
+    /// Least distance that the task's pairs must keep, mm.
     pub fn least(&self) -> f64 {
         if self.meet { -TOUCH } else { MIN_GAP_MM }
     }
 
-    /// The servos on which the relative place of the two mounts depends.
+    /// The servos on which the relative placement of the two mounts depends.
     pub fn servos(&self) -> Vec<usize> {
         let mut all: Vec<_> = self
             .mounts
@@ -65,8 +64,8 @@ impl Task {
         all
     }
 
-    /// The tasks of a robot: all pairs of bodies whose heights, and whose rectangles, are
-    /// less than `within` mm apart.
+    /// The tasks of a robot: all pairs of bodies that are less than `within` mm apart both in height and by the
+    /// rectangles that they never leave.
     pub fn all(
         assembly: &Assembly,
         guard: &Guard,
@@ -139,26 +138,24 @@ fn shape_pairs(i: usize, a: &Body, j: usize, b: &Body, within: f64) -> Vec<Shape
     shape_pairs
 }
 
-/// The holes of a layer that are large enough for a shape.
+/// The holes of a layer that are at least as wide as a shape.
 fn holes(prism: &Prism, shape: &Shape) -> Vec<Shape> {
     let large = |hole: &&Shape| hole.width() >= shape.width();
     prism.cut.iter().filter(large).cloned().collect()
 }
 
 impl ShapePair {
-    /// True if the two are certainly at least `by` mm apart while the second's frame moves
-    /// by up to `moves` mm and the ends of its axes by up to `turns`. It is a quick test,
-    /// so it may be false although they are apart.
+    /// True if the two are certainly at least `by` mm apart while the second's frame moves by up to `moves` mm and
+    /// the ends of its axes by up to `turns`. It is a quick test: false does not mean that they are near.
     pub fn is_far(&self, place: &Placement, [moves, turns]: [f64; 2], by: f64) -> bool {
         let [(a, reach), (b, other)] = self.discs;
         let between = (place.map(b) - a).length() - reach - other;
-        // Turned, a point strays along both axes.
+        // When the frame turns, a point moves along both axes.
         between - moves - 2.0 * turns * self.lever >= by
     }
 
-    /// The constant gap of a pinned pair, mm: a pin in the middle of a round hole, or a disc
-    /// whose centre is fixed in the other's frame, at all of some places. `None` if the pair
-    /// is not pinned.
+    /// The gap of a pinned pair, mm, which is constant: a pin in the centre of a round hole, or a disc whose centre
+    /// is fixed in the other's frame, in all of `places`. `None` if the pair is not pinned.
     pub fn pinned(&self, places: &[Placement]) -> Option<f64> {
         /// A bound of the rounding error of a joint's place, mm.
         const ROUNDING_MM: f64 = 1e-6;
@@ -200,7 +197,7 @@ impl ShapePair {
             .map(|air| self.with_gap(air))
     }
 
-    /// The distance of two shapes whose distance from above is known, mm.
+    /// The distance of two shapes, mm, from their distance in plan view.
     fn with_gap(&self, flat: f64) -> f64 {
         match self.gap > 0.0 {
             true => flat.max(0.0).hypot(self.gap),
@@ -208,14 +205,13 @@ impl ShapePair {
         }
     }
 
-    /// The distance of the two, mm, with the second's frame at a place in the first's; below
-    /// 0 they overlap.
+    /// The distance of the two, mm, with the second's frame placed in the first's; negative if they overlap.
     pub fn apart(&self, place: &Placement) -> f64 {
         self.at_least(place, |_| Vector::default())
     }
 
-    /// Lower bound of their distance in a region, from their places in its middle and the
-    /// distance that each point can stray from there.
+    /// Lower bound of their distance in a region, from their placement at its middle and the largest motion of each
+    /// point from there.
     pub fn apart_within<const N: usize>(
         &self,
         place: &Placement,
@@ -246,7 +242,7 @@ impl ShapePair {
             return self.with_gap(flat);
         }
         for hole in &self.around_first {
-            // A hole that strays has the same effect as a pin that strays.
+            // A hole that moves has the same effect as a pin that moves.
             flat = flat.max(self.first.within(&hole.placed(place), largest_change(hole)));
         }
         for hole in &self.around_second {

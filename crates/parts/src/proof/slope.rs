@@ -1,7 +1,7 @@
-//! Numbers that depend on some servos: bounds, and bounds of how fast they change.
+//! Automatic differentiation with bounds: numbers that depend on some servos, and how fast they change.
 //!
-//! The closed forms of the mechanism take any number ([`Real`]), so they also take these,
-//! and each result says how it depends on the servos. No derivative is derived by hand.
+//! The closed-form equations of the mechanism take any number type ([`Real`]), so they also take this one, and each
+//! result includes its derivatives by the servos' angles. No derivative is derived by hand.
 
 use std::f64::consts::PI;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -10,12 +10,12 @@ use lizard_kinematics::Real;
 
 use super::interval::Interval;
 
-/// Bounds of a number, and of its derivatives, while `N` servos turn within bounds.
+/// Bounds of a number and of its derivatives while `N` servos turn within given ranges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slope<const N: usize> {
     /// Bounds of its value.
     pub value: Interval,
-    /// Bounds of its derivatives by the servos' angles, per degree.
+    /// Bounds of its derivatives with respect to the servos' angles, per degree.
     pub slope: [Interval; N],
 }
 
@@ -27,16 +27,14 @@ impl<const N: usize> Slope<N> {
         angle
     }
 
-    /// Largest distance from its value at the middle angles, if each servo may be `half`
-    /// degrees from there.
+    /// Largest change from its value at the middle angles, if each servo may be up to `half` degrees from there.
     pub fn largest_change(&self, half: &[f64; N]) -> f64 {
         let slopes = self.slope.iter().zip(half);
         slopes.fold(0.0, |sum, (slope, half)| sum + slope.most() * half)
     }
 
-    /// Tightens the bounds of the number by its value in the middle and the distance that it can
-    /// stray. Bounds from operations are often much wider, because each operation takes
-    /// its operands to be independent.
+    /// Tightens the bounds of the number by its value at the middle and its largest change from there. Bounds from
+    /// interval arithmetic are often much wider, because each operation treats its operands as independent.
     pub fn tighten(self, middle: f64, half: &[f64; N]) -> Self {
         /// A bound of the rounding error of `middle`.
         const ROUNDING: f64 = 1e-9;
@@ -69,10 +67,10 @@ impl<const N: usize> Slope<N> {
     }
 }
 
-/// Implements operators. `each` and `zip` apply the rule for the slopes.
+/// Implements operators. `each` and `zip` apply the derivative rule.
 macro_rules! operators {
     ($($operator:ident $method:ident($self:ident, $other:ident: $type:ty) $result:block)*) => {$(
-        // The slopes of a product or a quotient need other operations, too.
+        // The derivatives of a product or a quotient also need other operations.
         #[allow(clippy::suspicious_arithmetic_impl)]
         impl<const N: usize> $operator<$type> for Slope<N> {
             type Output = Self;
@@ -117,7 +115,7 @@ impl<const N: usize> Real for Slope<N> {
 
     fn sin_cos_each<const K: usize>(degrees: [Self; K]) -> ([Self; K], [Self; K]) {
         let (sines, cosines) = Interval::sin_cos_each(degrees.map(|angle| angle.value));
-        // A degree in radians, between its two neighbouring numbers.
+        // One degree in radians, between its two neighbouring floating-point numbers.
         let degree = Interval::new((PI / 180.0).next_down(), (PI / 180.0).next_up());
         let (mut sin, mut cos) = (degrees, degrees);
         for i in 0..K {
@@ -167,7 +165,7 @@ mod tests {
                             let rate = (numbers(next)[i] - value) / step;
                             let Interval { low, high } = held[i].slope[servo];
                             assert!(low - 1e-4 <= rate && rate <= high + 1e-4);
-                            // And not much more than that.
+                            // The bounds of the derivatives are not much wider than needed.
                             assert!(half > 0.1 || high - low < 0.1, "{low} {high}");
                         }
                     }

@@ -1,7 +1,7 @@
-//! The rectangle that a body never leaves.
+//! The rectangle that a body never leaves at any accepted pose.
 //!
-//! Most pairs are never near each other, such as the couplers of head and tail. If their
-//! rectangles are apart, no poses have to be checked.
+//! Most pairs of bodies are never near each other, such as the couplers of head and tail. If their rectangles are
+//! apart, no poses need to be checked.
 
 use lizard_kinematics::Vector;
 
@@ -42,7 +42,7 @@ pub fn all(assembly: &Assembly, guard: &Guard) -> Vec<Rectangle> {
     rectangles
 }
 
-/// True if two rectangles are at least a length apart, mm.
+/// True if two rectangles are at least `by` mm apart.
 pub fn apart(a: &Rectangle, b: &Rectangle, by: f64) -> bool {
     a.iter()
         .zip(b)

@@ -37,7 +37,7 @@ fn every_body_is_printed_or_bought() {
 #[test]
 fn a_robot_that_is_the_same_on_both_sides_has_its_mass_in_the_middle() {
     let (_, paper) = bill("paper");
-    // All but board and supply, which are balanced to what counts as the middle.
+    // Everything except board and supply is symmetric, and those are balanced to within the tolerance.
     let error = paper.centre[0].abs().max(paper.centre[1].abs());
     assert!(error < 1.0, "{:?}", paper.centre);
     assert!((350.0..450.0).contains(&paper.grams), "{}", paper.grams);
@@ -132,8 +132,8 @@ fn a_leg_is_held_against_friction_and_a_caught_foot_spares_no_servo() {
     let strut = 28.5f64.hypot(10.0);
     assert!((assembly.layout().legs[0].strut_length - strut).abs() < 1e-9);
     assert!((hold.installed - strut - 3.0).abs() < 1e-9);
-    // At neutral the strut stands at 60.8 deg to the anchor's arm; walk swings a leg by
-    // 20 deg to either side, look one a little more.
+    // At neutral the angle between the strut and the anchor's arm is 60.8 deg. In walk a leg swings by 20 deg to
+    // either side, in look by a little more.
     let between = 10.0f64.atan2(28.5).to_degrees() + 41.409_622;
     let lever = |swing: f64| 22.0 * (between + swing).to_radians().sin();
     let [least, most] = hold.lever;
@@ -141,11 +141,11 @@ fn a_leg_is_held_against_friction_and_a_caught_foot_spares_no_servo() {
     assert!(lever(20.0) - 0.01 < most && most < 22.0);
     assert!((hold.preload - hold.lever[0] * hold.force).abs() < 1e-9);
     assert!(hold.friction * 1.8 < hold.preload);
-    // With foot and body held the slot ends long before the 40 deg of a walk, at more than
-    // seven tenths of what stalls an SG-90.
+    // With foot and body held, the pin reaches the slot's end long before the 40 deg of a walk, at more than seven
+    // tenths of the stall torque of an SG-90.
     assert!(12.0 < hold.way[0] && hold.way[1] < 25.0, "{:?}", hold.way);
     assert!((131.0..160.0).contains(&hold.end[1]) && !hold.lets_servo_turn());
-    // By the triangle of arm, line and strut, 5 mm longer, with the longest lever.
+    // Checked with the triangle of arm, ground line and strut: the strut is 5 mm longer, with the longest lever.
     let robot = assembly.robot();
     let stretched = |lag: f64| {
         let angle = robot.servos()[1].neutral + 20.0;
@@ -157,7 +157,7 @@ fn a_leg_is_held_against_friction_and_a_caught_foot_spares_no_servo() {
     let by = (stretched(way + 0.01) - stretched(way - 0.01)) / 0.02f64.to_radians();
     let force = hold.force + 5.0 * hold.rate;
     assert!((torque / (force * by) - 1.0).abs() < 1e-4, "{torque}");
-    // The weakest spring with which the robot walks does spare a servo.
+    // Only the weakest spring with which the robot still walks lets the servo turn.
     let (_, weak) = bill_with("paper", &format!("{STRUT}\nforce = 2.0\nrate = 0.2"));
     assert!(weak.hold.expect("springs").lets_servo_turn());
 }
@@ -187,7 +187,7 @@ fn rigid_struts_are_printed_instead_and_need_no_springs() {
     let (assembly, rigid) = bill_with("paper", "");
     assert_eq!(sprung.count("tension spring"), 4);
     assert_eq!(rigid.count("tension spring"), 0);
-    // The same screws and nuts.
+    // The same screws and nuts are needed.
     for what in ["screw M3", "lock nut"] {
         assert_eq!(rigid.count(what), sprung.count(what));
     }
@@ -212,7 +212,7 @@ fn rigid_struts_are_printed_instead_and_need_no_springs() {
     let said = sprung.to_string();
     let (_, table) = said.split_once("```toml\n").expect("a table");
     let (drive, _) = table.split_once("\n\n").expect("the drive");
-    // The table that it quotes makes the same robot.
+    // The quoted table makes the same robot.
     let (again, _) = bill_with("paper", drive);
     let [was, is] = [sprung.hold, SpringEffect::of(&again)].map(|hold| hold.expect("springs"));
     assert!((was.force - is.force).abs() < 0.01 && (was.rate - is.rate).abs() < 0.001);

@@ -1,7 +1,6 @@
 //! Tests of what matters to a builder: leads, springs, screws on sale, walls, marks, roofs.
 //!
-//! The outlines of the layers are tested point by point, not by the shapes that the proof
-//! of fit takes.
+//! The outlines of the layers are tested point by point, not by the shapes that the proof of fit uses.
 
 use lizard_kinematics::{End, Vector};
 use lizard_parts::{Body, Kind, Loop, Mesh, Outline, Part, Prism, Solid, coupon};
@@ -12,7 +11,7 @@ fn at(x: f64, y: f64) -> Vector {
     Vector::new(x, y)
 }
 
-/// Points of a rectangle by its middle and its size, every 0.3 mm.
+/// Points of a rectangle, given by its centre and size, every 0.3 mm.
 fn points(middle: Vector, size: Vector) -> Vec<Vector> {
     let steps = |size: f64| {
         let count = (size / 0.3).ceil() as i32;
@@ -37,7 +36,7 @@ fn a_servo_goes_into_the_plate_with_its_lead() {
             for i in end.servos() {
                 let middle = assembly.layout().plate.cases[i];
                 let edge = middle + at(0.0, end.sign() * servo.length / 2.0);
-                // 4 x 1.2 mm at the shaft's end.
+                // The lead's bundle is 4 x 1.2 mm, at the end where the shaft is.
                 let lead = points(edge + at(0.0, end.sign() * 0.6), at(4.0, 1.2));
                 let case = points(middle, at(servo.width, servo.length));
                 for (z, outline) in &plate {
@@ -63,7 +62,7 @@ fn the_coupon_has_the_openings_of_the_plate() {
     let parts = assembly.robot().parts();
     let [coupon, _] = coupon(parts);
     let floor = Outline::of(&coupon.prisms[0]);
-    // The largest holes are the openings, one of each fit.
+    // The largest holes are the openings, one for each fit.
     let mut holes: Vec<&Loop> = floor.pieces[0][1..].iter().collect();
     holes.sort_by(|a, b| a.area().total_cmp(&b.area()));
     let mut areas: Vec<f64> = holes.iter().take(5).map(|hole| -hole.area()).collect();
@@ -71,7 +70,7 @@ fn the_coupon_has_the_openings_of_the_plate() {
     for (column, area) in areas.into_iter().enumerate() {
         let fit = 0.1 * column as f64;
         let case = (parts.servo.length + 2.0 * fit) * (parts.servo.width + 2.0 * fit);
-        // The notch reaches 1.2 mm beyond the case and its air.
+        // The notch extends 1.2 mm beyond the case and its clearance.
         let expected = case + 5.0 * 1.2;
         assert!(
             (area - expected).abs() < 1e-6,
@@ -91,7 +90,7 @@ fn a_hung_coil_is_as_long_as_its_hooks_leave_and_lies_in_its_strut() {
             let shape = &spring.prisms[0].add[0];
             let x = shape.points.iter().map(|point| point.x);
             let length = x.clone().fold(f64::MIN, f64::max) - x.fold(f64::MAX, f64::min);
-            // Two hooks of an inner diameter each around the far sides of two M3 screws.
+            // Each hook, with the coil's inner diameter, goes around the far side of an M3 screw.
             let inner = parts.spring.outer - 2.0 * parts.spring.wire;
             let hung = assembly.layout().legs[i].strut_length + 3.0 - 2.0 * inner;
             assert!(
@@ -103,7 +102,7 @@ fn a_hung_coil_is_as_long_as_its_hooks_leave_and_lies_in_its_strut() {
             }
             let (bottom, top) = (spring.z()[0], spring.z()[1]);
             let middle = shape.middle();
-            // Also where the leg lags as far as the slot lets it.
+            // This also holds when the leg lags as far as the slot allows.
             for lag in [0.0, 2.5, 5.0] {
                 let size = at(length + lag, parts.spring.outer);
                 for (z, outline) in layers(&strut.prisms) {
@@ -217,10 +216,9 @@ fn walls_beside_pockets_and_holes_are_as_thick_as_robot_toml_says() {
         let wall = assembly.robot().parts().wall;
         let mut asked = 0;
         for part in assembly.parts() {
-            // In the plate the servos' own screws are beside their openings, and the
-            // engraved lines of a number beside each other; in a link the horn's screws
-            // are beside its hub; a ring is as thin as the coil beside it demands; a dome runs
-            // out at its hole.
+            // Thinner walls are intended here: in the plate the servos' own screws are beside their openings, and
+            // the engraved lines of a number beside each other; in a link the horn's screws are beside its hub; a
+            // ring is as thin as the coil beside it requires; a dome tapers to nothing at its hole.
             let thinner = ["plate", "link", "strut ring", "pad"];
             if thinner.iter().any(|known| part.name.starts_with(known)) {
                 continue;
@@ -276,7 +274,7 @@ fn parts_that_are_alike_but_for_left_and_right_are_marked() {
                 continue;
             }
             marks.push((describe(part), part.mark.clone()));
-            // There was room for it: some of the part is gone.
+            // The mark was engraved, so some of the part's material is gone.
             let (printed, roofs) = part.printed();
             let solid = Solid::of(&printed);
             let skins = 0.3 * 9.0 * roofs as f64;
@@ -313,7 +311,7 @@ fn no_hole_of_a_printed_part_begins_in_the_air() {
                 assert!((end - z[0]).abs() < 1e-9, "{name}: {part}");
                 assert!(z[1] > z[0] + 0.01, "{name}: {part}");
                 for line in outline.loops().filter(|line| line.area() < 0.0) {
-                    // Just beside the hole there is something to stand on, somewhere.
+                    // Somewhere just beside the hole, the layer below supports this one.
                     let Some((middle, radius)) = line.circle() else {
                         continue;
                     };
@@ -325,7 +323,7 @@ fn no_hole_of_a_printed_part_begins_in_the_air() {
                 }
             }
         }
-        // Two in each link, one in each crank, foot and pad.
+        // There are two in each link, and one in each crank, foot and pad.
         assert_eq!(roofs, 20, "{name}");
     }
 }

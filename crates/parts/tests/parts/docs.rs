@@ -1,4 +1,4 @@
-//! Tests that the pages about parts agree with the code: values, the list to buy, the steps.
+//! Tests that the pages about parts agree with the code: values, shopping list, steps.
 
 use lizard_parts::{Bill, places, steps, to_buy};
 use lizard_robot::{Parts, Robot};
@@ -10,7 +10,7 @@ fn read(path: &str) -> String {
     std::fs::read_to_string(&path).unwrap_or_else(|fault| panic!("{path}: {fault}"))
 }
 
-/// The block of the page that has all keys.
+/// The block of the page that lists all keys.
 fn block() -> String {
     let page = read("docs/build.md");
     let blocks = page.split("```toml\n").skip(1);
@@ -24,7 +24,7 @@ fn the_page_has_the_default_values() {
     let paper = read("robots/paper.toml");
     let robot = Robot::parse(&format!("{paper}\n{}", block())).expect("docs/build.md");
     let paper = Robot::parse(&paper).expect("robots/paper.toml");
-    // The foot's place that is left out is the one that hips would give.
+    // The foot's position, an optional key, is the one that results from the hips.
     let mut parts = *robot.parts();
     assert!(parts.foot.take().is_some());
     assert_eq!(parts, Parts::default());
@@ -35,7 +35,7 @@ fn the_page_has_the_default_values() {
 #[test]
 fn the_page_has_every_key() {
     let block = block();
-    // The names of all fields, as they are printed for a programmer.
+    // The names of all fields, from their debug output.
     let printed = format!("{:#?}", Parts::default());
     let mut asked = 0;
     for line in printed.lines() {
@@ -53,7 +53,7 @@ fn the_page_has_every_key() {
     assert!(asked > 30, "{asked} keys of {printed}");
 }
 
-/// Compares the text of a page after a mark, up to the next mark, or writes it there.
+/// Compares the text of a page between a mark and the end mark with `expected`, or writes it there.
 fn quoted(path: &str, start: &str, expected: &str) {
     const END: &str = "<!-- end of the list -->";
     let page = read(path);
@@ -87,7 +87,7 @@ fn the_pages_quote_the_lists_of_the_bill() {
     ] {
         let start = format!("<!-- {mark}; a test holds it -->\n");
         quoted(path, &start, list);
-        // The guide has it, too.
+        // The guide contains the list, too.
         assert!(bill.to_string().contains(list), "{mark}");
     }
     for word in ["strap", "wire", "switch", "fuse", "strip", "plug"] {

@@ -1,4 +1,4 @@
-//! Tests of the files' content: lengths from hole to hole, and the same bytes every time.
+//! Tests of the files' content: lengths from hole to hole, and identical bytes on every run.
 
 use lizard_kinematics::Vector;
 use lizard_parts::{Assembly, Body, Loop, Mount, Outline, part_files, sheets};
@@ -9,7 +9,7 @@ fn assembly(name: &str) -> Assembly {
     crate::slotted(name, "")
 }
 
-/// The middles of the holes of a body through which an M3 screw turns, from above.
+/// The centres, from above, of a body's holes in which an M3 screw turns.
 fn holes(body: &Body) -> Vec<(f64, f64)> {
     let mut found: Vec<(f64, f64)> = Vec::new();
     for prism in &body.prisms {
@@ -23,7 +23,7 @@ fn holes(body: &Body) -> Vec<(f64, f64)> {
     found
 }
 
-/// Checks that some two holes of a body are this far apart.
+/// Checks that two holes of a body are this far apart.
 #[track_caller]
 fn assert_hole_distance(assembly: &Assembly, name: &str, mm: f64) {
     let holes = holes(body(assembly, name));
@@ -43,7 +43,7 @@ fn from_hole_to_hole_is_the_length_of_the_link() {
         for (coupler, length) in [("A1", l.l2), ("A2", l.l3), ("A3", l.l8), ("A4", l.l7)] {
             assert_hole_distance(&assembly, &format!("coupler {coupler}"), length);
         }
-        // Crank and arm stand at a right angle on the shaft.
+        // Crank and arm form a right angle at the shaft.
         for (link, crank, arm) in [
             ("A1", l.l1, l.l14),
             ("A2", l.l4, l.l19),
@@ -77,7 +77,7 @@ fn a_rigid_strut_is_as_long_as_the_other_from_hole_to_hole_and_within_it() {
             let slotted = rigid.name.trim_start_matches("rigid ");
             let slotted = body(&assembly, slotted);
             assert_eq!(slotted.mount, rigid.mount);
-            // What keeps clear of the one keeps clear of the other.
+            // The rigid strut lies within the slotted one, so bodies clear of the slotted one are clear of both.
             let (inner, outer) = (rigid.z(), slotted.z());
             assert!(outer[0] <= inner[0] && inner[1] <= outer[1], "{name}");
             for prism in &slotted.prisms {
@@ -110,7 +110,7 @@ fn the_foot_stands_where_the_contact_model_has_it() {
             for (servo, [forward, left]) in feet.into_iter().enumerate() {
                 let foot = Vector::new(-left, forward);
                 let leg = &assembly.layout().legs[servo];
-                // The drawings show these parts.
+                // The points that the drawings show.
                 let angle = pose.legs[servo].direction.angle();
                 let drawn = leg.at(angle, angle);
                 let at = |mount, point| assembly.place(mount, &pose).map(point);

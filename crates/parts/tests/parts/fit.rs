@@ -1,11 +1,11 @@
-//! No two parts collide at poses on a grid, unless they are made to meet; and with a wrong
-//! measure some parts do.
+//! Tests that no two parts collide at poses on a grid, unless they are designed to touch, and that wrong dimensions
+//! make some collide.
 
 use lizard_parts::Clearance;
 
 use crate::{ROBOTS, assembly, body, slotted};
 
-/// The nearest pair of parts of the paper's robot with changed measures.
+/// The nearest pair of parts of the paper's robot with changed dimensions.
 fn nearest(parts: &str) -> Option<Clearance> {
     let assembly = slotted("paper", parts);
     assembly.nearest(assembly.poses(9), 1.0).into_iter().next()
@@ -93,7 +93,7 @@ fn pins_meet_the_holes_of_the_parts_that_they_hold() {
 fn a_robot_that_does_not_fit_is_refused_with_one_message() {
     let bar = "parts.bar is 6 mm, but the head of a screw and a wall on each side need 7.3 mm";
     let spring = "leg strut LF is 30.2 mm from screw to screw, but its spring is 40.0 mm long";
-    // The pivot that the paper's figures suggest is under the servo's link.
+    // The pivot that the paper's figures suggest is below the servo's link.
     let naive = "[parts]\npivot = [6.25, -4.0]\n[parts.spring]\nlength = 8.0";
     let near = "[parts]\npivot = [22.0, 6.0]\n[parts.spring]\nlength = 20.0";
     for (parts, words) in [

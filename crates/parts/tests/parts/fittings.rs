@@ -1,4 +1,4 @@
-//! Supply, strips and plugs: each has a room, and products that fit into it.
+//! Supply, strips and plugs: each has a space on the robot, and products that fit into it.
 
 use lizard_parts::{Assembly, BATTERIES, Body, Fitting, Kind, Price, Shape, places};
 use lizard_robot::{FUSE, SWITCH};
@@ -27,7 +27,7 @@ fn both_products_named_for_a_fitting_go_into_the_room_of_its_body() {
             let found = bodies(&assembly, fitting);
             let count = if fitting == Fitting::Resistor { 4 } else { 1 };
             assert_eq!(found.len(), count, "{name}: {}", facts.name);
-            // A strap goes around things: it has no box.
+            // A strap goes around other parts, so it has no box.
             if fitting == Fitting::Strap {
                 continue;
             }
@@ -59,7 +59,7 @@ fn both_batteries_that_are_named_go_into_the_room_of_every_robots_battery() {
             assert!(fits, "{name}: {product} in {room:?}");
             assert!(places(room).contains(product.name));
         }
-        // A room in which none fits names none.
+        // A space into which none fits lists none.
         assert!(!places([20.0, 30.0, 10.0]).contains(BATTERIES[0].name));
     }
 }
@@ -100,7 +100,7 @@ fn a_radio_module_of_either_common_size_has_a_place() {
 
 #[test]
 fn a_tie_slot_has_a_wall_on_each_side_and_nothing_stands_in_the_ties_way() {
-    // Ties go through the deck beside what they hold, so no fitting is over a slot.
+    // Cable ties go through the deck beside the parts that they hold, so no fitting covers a slot.
     let assembly = assembly("paper", "");
     let deck = assembly.body("deck").expect("a deck");
     let narrow = |cut: &&Shape| {

@@ -1,4 +1,4 @@
-//! Tests of the robot as parts: each makes the parts of some files of robots/.
+//! Tests of the robot's parts, each with some of the robot files in robots/.
 
 use lizard_kinematics::Solution;
 use lizard_parts::{Assembly, Body};
@@ -19,16 +19,16 @@ mod pads;
 mod proof;
 mod surface;
 
-/// The files of robots/ but [`GRAIN`].
+/// The files of robots/ except [`GRAIN`].
 const ROBOTS: [&str; 4] = ["paper", "large", "unequal", "own-gaits"];
 
-/// The file of robots/ whose parts are the paper's but for the pads, as a test shows.
+/// The file of robots/ whose parts equal the paper's except for the pads, as a test shows.
 const GRAIN: &str = "grain";
 
-/// The lines that put legs on slotted struts.
+/// The lines that give the legs slotted struts.
 const STRUT: &str = "[leg.drive]\nkind = \"strut\"";
 
-/// The robot of a file of robots/, with more lines at the end.
+/// The robot of a file of robots/, with more lines appended.
 fn with(name: &str, more: &str) -> Robot {
     let path = format!("{}/../../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(&path).expect(&path);
@@ -36,12 +36,12 @@ fn with(name: &str, more: &str) -> Robot {
         .unwrap_or_else(|error| panic!("{name} with {more}: {error}"))
 }
 
-/// The assembly of a file of robots/, with more lines at the end.
+/// The assembly of a file of robots/, with more lines appended.
 fn assembly(name: &str, more: &str) -> Assembly {
     Assembly::new(&with(name, more))
 }
 
-/// The assembly of a file of robots/ with slotted struts, which are the wider ones.
+/// The assembly of a file of robots/ with slotted struts, the wider kind.
 fn slotted(name: &str, more: &str) -> Assembly {
     assembly(name, &format!("{STRUT}\n{more}"))
 }

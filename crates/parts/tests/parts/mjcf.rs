@@ -1,4 +1,4 @@
-//! The file for MuJoCo says what robot.toml says.
+//! Tests that the MuJoCo file agrees with robot.toml.
 
 use std::collections::BTreeMap;
 
@@ -141,7 +141,7 @@ fn a_floor_has_its_blocks_its_slope_and_its_grip_on_each_pad() {
     let option = nodes
         .find(|node| node.has_tag_name("option"))
         .expect("options");
-    // It rises ahead, so weight pulls the robot back: half of it at 30 deg.
+    // The floor rises ahead, so half of the weight pulls the robot back at 30 deg.
     let [right, ahead, up] = numbers(option, "gravity")[..] else {
         panic!("three parts")
     };
@@ -163,7 +163,7 @@ fn a_floor_has_its_blocks_its_slope_and_its_grip_on_each_pad() {
         let name = format!("pad {leg}");
         let pad = geoms().find(|geom| geom.attribute("name") == Some(&name));
         let pad = pad.expect("a pad");
-        // Else MuJoCo would take the larger friction of pad and floor.
+        // Otherwise MuJoCo would use the larger friction of pad and floor.
         assert_eq!(pad.attribute("priority"), Some("1"));
         assert_eq!(numbers(pad, "friction")[0], friction);
     }
@@ -184,7 +184,7 @@ fn the_ball_that_touches_the_floor_is_that_of_the_pads_dome() {
     let part = parts.iter().find(|part| part.bodies[0] == pad.name);
     let (layers, _) = part.expect("a pad to print").printed();
     let mesh = Mesh::of(&Solid::of(&layers));
-    // The pad lies on its back, about its middle; nearer to it is the hole for the screw.
+    // The printed pad lies on its back, centred on the origin; in the middle is the hole for the screw.
     let top = mesh.corners.iter().fold(0.0, |top, [.., z]| z.max(top));
     let (mut lowest, mut count) = (top, 0);
     for triangle in &mesh.triangles {
@@ -224,7 +224,7 @@ fn a_slotted_strut_pulls_with_its_springs_force_and_yields_one_way() {
     let all = bodies(&document);
     for leg in LEGS {
         let slot = all[&format!("slot {leg}")].1;
-        // A steel wire of 0.6 mm, some 0.7 m of it.
+        // A steel wire of 0.6 mm, about 0.7 m long.
         let grams = 1000.0 * numbers(child(slot, "inertial"), "mass")[0];
         assert!((0.5..2.5).contains(&grams), "{grams}");
         let joint = child(slot, "joint");
@@ -300,7 +300,7 @@ fn servos_and_joints_of_a_robot_file_are_those_of_the_engine() {
     };
     assert_eq!(friction("link"), [0.017; 4]);
     assert_eq!(friction("rod"), [0.5; 2]);
-    // 1.2 kg cm and 400 deg/s at 4.8 V, both less at 4.2 V; the rotor's inertia is the same.
+    // At 4.8 V: 1.2 kg cm and 400 deg/s. Both are less at 4.2 V; the rotor's inertia is the same.
     let link = joints
         .iter()
         .find(|node| node.attribute("name") == Some("link A1"))

@@ -1,4 +1,4 @@
-//! The masses in the file for MuJoCo are those of robot.toml, of the bill and of the contact model.
+//! Tests that the masses in the MuJoCo file agree with robot.toml, the bill and the contact model.
 
 use lizard_parts::{Assembly, Bill};
 use lizard_robot::Robot;
@@ -8,7 +8,7 @@ use roxmltree::Document;
 use crate::mjcf_reader::{bodies, child, neutral, numbers, written};
 use crate::{ROBOTS, with};
 
-/// Mass, g, and mass centre of all bodies: forward, left, above the plate, mm.
+/// Mass, g, and mass centre of all bodies together: forward, left, above the plate, mm.
 pub fn weighed(text: &str) -> (f64, [f64; 3]) {
     let document = Document::parse(text).expect("well formed");
     let (mut mass, mut moment) = (0.0, [0.0; 3]);
@@ -28,7 +28,7 @@ pub fn weighed(text: &str) -> (f64, [f64; 3]) {
     (mass, [forward, -right, up - plate])
 }
 
-/// A robot of a file with another mass, g, and another mass centre, mm.
+/// The robot of a file with its mass, g, and its mass centre, mm, replaced.
 fn with_body(name: &str, mass: f64, [ahead, left]: [f64; 2]) -> Robot {
     let path = format!("{}/../../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(&path).expect(&path);
@@ -50,11 +50,11 @@ fn its_bodies_weigh_what_robot_toml_says_and_where() {
             let robot = with_body(name, mass, centre);
             let bill = Bill::of(&Assembly::new(&robot), &[], &neutral(&robot));
             let (grams, [ahead, left, up]) = weighed(&written(&robot, |_| {}));
-            // A chord cuts off a little of each round end.
+            // The mesh replaces each arc by chords, which cut off a little volume.
             assert!((grams / mass - 1.0).abs() < 2e-3, "{name} {grams} {mass}");
             let error = (ahead - centre[0]).hypot(left - centre[1]);
             assert!(error < 0.05, "{name} {ahead} {left} {centre:?}");
-            // Wires count at the height of the plate.
+            // Wires count as being at the height of the plate.
             let moment = (grams * up / (bill.grams * bill.centre[2]) - 1.0).abs();
             assert!(moment < 0.01, "{name} {up} {:?}", bill.centre);
         }
@@ -79,7 +79,7 @@ fn the_mass_that_the_contact_model_gives_a_leg_is_that_of_its_parts() {
                 let centre = numbers(inertial, "pos");
                 (numbers(inertial, "mass")[0], centre[0].hypot(centre[1]))
             };
-            // Foot and coupler move as the pad does; crank and follower turn about their ends.
+            // Foot and coupler move as the pad does; crank and follower rotate about their ends.
             let carried = part("foot").0 + part("leg coupler").0;
             let turned = ["crank", "follower"].map(part);
             let turned = turned.map(|(mass, lever)| mass * 1e3 * lever / ground.feet.reach);

@@ -1,4 +1,4 @@
-//! A reader of the file for MuJoCo, which places its bodies by its own numbers alone.
+//! A reader of the MuJoCo file that places the bodies using only the file's numbers.
 
 use std::collections::BTreeMap;
 
@@ -25,7 +25,7 @@ pub fn numbers(node: Node, attribute: &str) -> Vec<f64> {
     parts.map(|part| part.parse().expect("a number")).collect()
 }
 
-/// A body of the file: where it is in the world, m, and how far it is turned.
+/// The placement of a body in the world: position, m, and rotation about z.
 #[derive(Clone, Copy)]
 pub struct Placed {
     pub at: [f64; 3],
@@ -46,7 +46,7 @@ impl Placed {
 /// Bodies by their names.
 pub type Bodies<'a> = BTreeMap<String, (Placed, Node<'a, 'a>)>;
 
-/// Every body of a file.
+/// Every body of a file, with its placement.
 pub fn bodies<'a>(document: &'a Document) -> Bodies<'a> {
     fn walk<'a>(parent: Node<'a, 'a>, on: Placed, all: &mut Bodies<'a>) {
         for body in parent.children().filter(|node| node.has_tag_name("body")) {
@@ -72,7 +72,7 @@ fn find<'a>(document: &'a Document, tag: &str) -> Node<'a, 'a> {
     child(document.root_element(), tag)
 }
 
-/// The elements within an element of the root.
+/// The child elements of an element of the root.
 pub fn elements<'a>(document: &'a Document, tag: &str) -> Vec<Node<'a, 'a>> {
     let children = find(document, tag).children();
     children.filter(Node::is_element).collect()

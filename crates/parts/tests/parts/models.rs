@@ -1,5 +1,5 @@
-//! URDF and SDF, read by a reader of XML: the bodies are those of the file for MuJoCo.
-//! `scripts/models-test` has other authors' parsers close the loops at other poses.
+//! Tests with an XML parser that the bodies in URDF and SDF are those in the MuJoCo file. In `scripts/models-test`,
+//! parsers by other authors close the loops at other poses.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_PI_2;
@@ -36,7 +36,7 @@ fn floats(text: &str) -> Vec<f64> {
     parts.map(|part| part.parse().expect("a number")).collect()
 }
 
-/// The elements of a kind by their names, which differ.
+/// The elements of a kind by name. The names are unique.
 fn named<'a>(parent: Node<'a, 'a>, tag: &str) -> BTreeMap<String, Node<'a, 'a>> {
     let mut all = BTreeMap::new();
     for node in parent.children().filter(|node| node.has_tag_name(tag)) {
@@ -47,10 +47,10 @@ fn named<'a>(parent: Node<'a, 'a>, tag: &str) -> BTreeMap<String, Node<'a, 'a>> 
     all
 }
 
-/// A body: place, mass, mass centre, and inertia as xx, yy, zz, xy, xz, yz.
+/// A body: placement, mass, mass centre, and inertia as xx, yy, zz, xy, xz, yz.
 type Read = (Placed, f64, Vec<f64>, Vec<f64>);
 
-/// A frame that is given by six numbers on another one.
+/// A frame that is given by six numbers relative to another frame.
 fn on(frame: Placed, six: &[f64]) -> Placed {
     assert_eq!(six[3..5], [0.0; 2], "it stays upright");
     Placed {
@@ -144,7 +144,7 @@ fn their_bodies_are_those_of_mujocos_file_turned_ahead() {
                     assert_eq!([*mass][..], numbers(inertial, "mass"), "{name}");
                     assert_eq!(*centre, numbers(inertial, "pos"), "{name}");
                     assert_eq!(*inertia, numbers(inertial, "fullinertia"), "{name}");
-                    // Their x is MuJoCo's y.
+                    // Their x axis is MuJoCo's y axis.
                     let [x, y, z] = placed.at;
                     for (found, wanted) in found.at.into_iter().zip([y, -x, z]) {
                         assert!((found - wanted).abs() < 1e-8, "{name} {found} {wanted}");

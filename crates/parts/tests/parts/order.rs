@@ -1,5 +1,4 @@
-//! Every screw can be put in and turned in the order of the guide; in a wrong order
-//! it cannot.
+//! Tests that every screw can be inserted and turned in the order of the guide, and that a wrong order is detected.
 
 use lizard_kinematics::Vector;
 use lizard_parts::{
@@ -19,9 +18,9 @@ fn every_screw_of_every_robot_can_be_reached() {
             let assembly = assembly(name, &format!("[leg.drive]\nkind = \"{kind}\""));
             let access_poses = assembly.access_poses(&order(&assembly));
             let access_poses = access_poses.unwrap_or_else(|blocked| panic!("{name}: {blocked}"));
-            // At neutral the follower covers a screw of its foot: the leg, which lies on
-            // the bench, is swung aside. A shorter anchor of a strut is over its servo's
-            // seat, where no socket gets to its nut: the link is turned.
+            // At neutral the follower covers a screw of its foot: the leg, which lies on the bench, is swung aside.
+            // In one robot a strut's shorter anchor is above its servo's seat, where no socket reaches its nut: the
+            // link is turned.
             for aside in access_poses {
                 let screw = match aside.step {
                     7 => "screw foot",
@@ -36,8 +35,7 @@ fn every_screw_of_every_robot_can_be_reached() {
     }
 }
 
-/// The blocked screws of the paper's robot with changed steps, each with the body in its
-/// way.
+/// The blocked screws of the paper's robot with changed steps, each with the body in its way.
 fn blocked(change: impl FnOnce(&mut Vec<Step>)) -> Vec<(String, ScrewOperation, String)> {
     let assembly = slotted("paper", "");
     let mut steps = order(&assembly);
@@ -53,7 +51,7 @@ fn blocked(change: impl FnOnce(&mut Vec<Step>)) -> Vec<(String, ScrewOperation, 
 #[test]
 fn a_wrong_order_is_found() {
     assert_eq!(blocked(|_| ()), []);
-    // A link's screws from below, when the struts are under it.
+    // A link's screws are inserted from below after the struts are under it.
     let late_screws = blocked(|steps| {
         steps[4].stages[0].adds =
             |body: &Body| matches!(body.kind, Kind::Horn) || body.name.starts_with("link");
@@ -85,7 +83,7 @@ fn a_pad_without_a_hole_for_the_key_is_found_when_the_feet_are_levelled() {
         ("screw height LF", ScrewOperation::Turn)
     );
     assert_eq!(refused.by, "pad LF");
-    // Both where it is put in and where the robot is levelled.
+    // The pad is found where it is mounted and where the robot is levelled.
     let steps = order(&glued);
     let level = steps.iter().position(|step| step.title == "Level the feet");
     let level = 1 + level.expect("a step");
@@ -96,7 +94,7 @@ fn a_pad_without_a_hole_for_the_key_is_found_when_the_feet_are_levelled() {
 
 #[test]
 fn a_strut_under_a_head_is_found() {
-    // Heads that a key has to hold from below, where only pockets hold them.
+    // Replaces hexagonal heads, which pockets hold, by heads that a key must hold from below.
     let unequal = slotted("unequal", "").altered(|bodies| {
         for body in bodies {
             if let Kind::HexScrew(length) = body.kind {
@@ -116,7 +114,7 @@ fn a_strut_under_a_head_is_found() {
 #[test]
 fn a_screw_that_nothing_lets_pass_refuses_the_robot() {
     let covered = slotted("paper", "").altered(|bodies| {
-        // A board as large as the plate, on the legs.
+        // A board as large as the plate, above the legs.
         let plate = bodies.iter().find(|body| body.name == "plate").cloned();
         let mut lid = plate.expect("a plate");
         lid.name = "deck lid".to_owned();
@@ -138,7 +136,7 @@ fn parts_that_move_together_are_not_in_one_place() {
     for name in ROBOTS {
         assert_eq!(slotted(name, "").measures_fit(), Ok(()), "{name}");
     }
-    // A standoff's screw whose head is in the boss of the board's screw.
+    // The head of a standoff's screw is moved into the boss of the board's screw.
     let near = slotted("paper", "").altered(|bodies| {
         let screw = |body: &&mut Body| body.name == "screw standoff 1 above";
         for body in bodies.iter_mut().filter(screw) {
@@ -151,7 +149,7 @@ fn parts_that_move_together_are_not_in_one_place() {
     assert!(refused.contains(both), "{refused}");
 }
 
-/// An independent check of free space: the layers' outlines, tested point by point.
+/// An independent check of free space, with the layers' outlines tested point by point.
 #[test]
 fn above_a_head_that_can_be_reached_there_is_no_material() {
     for name in ["paper", "unequal"] {
@@ -166,7 +164,7 @@ fn above_a_head_that_can_be_reached_there_is_no_material() {
         let mut asked = 0;
         for screw in assembly.bodies() {
             let here = step_of(screw);
-            // Only screws that come from above, on the robot.
+            // Only screws that are inserted from above, on the robot.
             let (Kind::Screw(_), [low, high]) = (screw.kind, &screw.prisms[..]) else {
                 continue;
             };

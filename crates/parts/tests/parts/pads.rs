@@ -1,4 +1,4 @@
-//! Pads for a strip with a grain: the notch for its end, and the direction that this shows.
+//! Pads for a strip with a grain: the notch for the strip's end, and the direction that the notch shows.
 
 use lizard_kinematics::Vector;
 use lizard_parts::{Bill, Outline, Part, Shape, papers};
@@ -6,7 +6,7 @@ use lizard_robot::servo::LEGS;
 
 use crate::{GRAIN, assembly, body, neutral};
 
-/// The notch of a pad: the only hole with corners.
+/// The notch of a pad: its only hole with corners.
 fn notch(prisms: &[lizard_parts::Prism]) -> Option<&Shape> {
     let mut cuts = prisms.iter().flat_map(|prism| &prism.cut);
     cuts.find(|cut| cut.points.len() > 1)
@@ -25,7 +25,7 @@ fn the_notches_of_all_four_pads_as_printed_and_put_on_point_to_the_head() {
     let (layers, closed) = pad.printed();
     assert_eq!(closed, 1, "the hole for the key, as in a plain pad");
     let notch = notch(&layers).expect("a notch in the file");
-    // A second pose: a foot never turns.
+    // A second pose is also checked, because a foot never turns.
     let poses = [[0.0; 4], [9.0, -8.0, 7.0, -6.0]].map(|turns| {
         let angles: [f64; 4] = assembly.robot().neutral().into();
         let angles = std::array::from_fn(|servo| angles[servo] + turns[servo]);
@@ -45,7 +45,7 @@ fn the_notches_of_all_four_pads_as_printed_and_put_on_point_to_the_head() {
         let axis = place.map(screw.prisms[0].add[0].middle());
         for corner in &notch.points {
             let from_axis = to_robot(corner) - axis;
-            // Robots of this project look along y.
+            // Robots of this project face along y.
             assert!(
                 (from_axis.x.abs() - 4.2).abs() < 1e-9,
                 "{leg}: {from_axis:?}"
@@ -77,7 +77,7 @@ fn a_pad_for_a_strip_lies_within_a_plain_one_and_is_as_high() {
                 notched += 1;
             }
         }
-        // From where the dome is wider than the notch is near its axis.
+        // The notch exists only in the layers where the dome is wide enough for it.
         assert!(notched > 5, "{leg}: {notched} layers");
     }
 }

@@ -1,5 +1,5 @@
-//! The proof that parts keep apart: its bound never exceeds the distance at any pose, it finds
-//! deliberate mistakes, and every robot's file passes it.
+//! Tests of the proof that parts do not collide: its bound never exceeds the distance at any pose, it finds
+//! deliberate mistakes, and every robot file passes it.
 
 use std::collections::BTreeSet;
 
@@ -9,7 +9,7 @@ use lizard_robot::Robot;
 
 use crate::{GRAIN, ROBOTS, assembly, body, slotted};
 
-/// Numbers from 0 to 1, the same in every run.
+/// Pseudo-random numbers from 0 to 1, the same in every run.
 struct Random(u64);
 
 impl Random {
@@ -22,8 +22,8 @@ impl Random {
     }
 }
 
-/// Poses that the guard accepts: half of them anywhere in the servos' travel, half at
-/// the edge of what is accepted, where parts come nearest.
+/// Poses that the guard accepts: some anywhere in the servos' travel, the others at the edge of the accepted range,
+/// where parts come nearest.
 fn poses(robot: &Robot, count: usize) -> Vec<Solution> {
     let mut random = Random(7);
     let mut poses = Vec::new();
@@ -49,7 +49,7 @@ fn poses(robot: &Robot, count: usize) -> Vec<Solution> {
     poses
 }
 
-/// Proves a robot's file, and compares the bounds with the distances at many poses.
+/// Proves that a robot file fits, and compares the bounds with the distances at many poses.
 fn assert_bounds_hold(name: &str) {
     let assembly = slotted(name, "");
     let proof = assembly.prove(|_, _| ());
@@ -74,8 +74,8 @@ fn assert_bounds_hold(name: &str) {
         let accepted = assembly.robot().accepted(seen.pose);
         assert!(accepted.is_some(), "{name}: {near}");
         assert!(near.proved <= seen.mm, "{name}: {near}");
-        // The proved bound is not much below the distance seen, except near poses that
-        // the guard hardly accepts.
+        // The proven bound is not much below the least distance found, except near poses that the guard barely
+        // accepts.
         let close = seen.mm < near.proved.max(0.0) * 2.1 + 0.02;
         assert!(close || near.doubt.is_some(), "{name}: {near}");
     }
@@ -114,7 +114,7 @@ fn the_robots_with_gaits_of_their_own_have_the_papers_parts() {
     let plain = |of: Assembly| {
         of.altered(|bodies| bodies.retain(|body| body.kind != lizard_parts::Kind::Pad))
     };
-    // Pads with a strip lie within the plain ones, as tests of the pads show.
+    // Pads with a strip lie within the plain ones, as the tests of the pads show.
     for (own, paper) in [
         (slotted("own-gaits", ""), paper.clone()),
         (plain(slotted(GRAIN, "")), plain(paper)),
@@ -136,7 +136,7 @@ fn every_file_of_robots_is_here() {
     assert_eq!(BTreeSet::from_iter(names), BTreeSet::from_iter(here));
 }
 
-/// The clash among those pairs of bodies of which one is given.
+/// The clash among the pairs that include a body for which `of` is true.
 fn find_clash(assembly: &Assembly, of: impl Fn(&Body) -> bool) -> Clash {
     let proof = assembly.prove_some(|a, b| of(a) || of(b), |_, _| ());
     proof.judge().expect_err("nothing is found")
@@ -178,7 +178,7 @@ fn a_robot_far_from_fitting_is_refused_after_a_few_regions() {
     assert!(proof.regions < 10_000, "{}", proof.regions);
 }
 
-/// The paper's robot with a screw that is longer by this much.
+/// The paper's robot with one screw made longer by `by` mm.
 fn with_longer_screw(name: &str, by: f64, downwards: bool) -> Assembly {
     slotted("paper", "").altered(|bodies| {
         let mut all = bodies.iter_mut();
@@ -210,7 +210,7 @@ fn a_screw_that_is_too_long_is_found() {
 
 #[test]
 fn swapped_layers_are_found() {
-    // The upper coupler of the head, laid where the lower one is.
+    // The layers of the head's upper and lower coupler are swapped.
     let swapped = slotted("paper", "").altered(|bodies| {
         let place = |name: &str| {
             bodies
@@ -247,7 +247,7 @@ fn a_hole_beside_its_pin_is_found() {
 
 #[test]
 fn parts_that_come_too_near_are_refused_with_their_pose() {
-    // At the end of the turn that the guard allows, the strut comes to the servo's screws.
+    // At the end of the rotation that the guard allows, the strut comes close to the servo's screws.
     let near = slotted("paper", "[parts]\nanchor = [22.0, 5.0]");
     let found = find_clash(&near, |body| body.name.starts_with("strut"));
     let message = found.to_string();
@@ -255,7 +255,7 @@ fn parts_that_come_too_near_are_refused_with_their_pose() {
     assert!(message.contains(" pose "), "{message}");
 }
 
-/// The bounds of a shape along x, shifted.
+/// The bounds of a shape along x, shifted by `from`.
 fn extent_along_x(shape: &Shape, from: f64) -> [f64; 2] {
     let x = shape.points.iter().map(|point| point.x + from);
     let low = x.clone().fold(f64::INFINITY, f64::min) - shape.radius;
@@ -282,12 +282,12 @@ fn a_rod_stays_in_its_sleeve_over_the_whole_stroke() {
                 let [rear, front] = extent_along_x(rod, slider.nominal + stroke);
                 smallest = smallest.min(front.min(end) - rear.max(start));
             }
-            // At the longest the rod is drawn out to what it must keep.
+            // At the longest stroke, the rod still overlaps the sleeve by exactly the required length.
             assert!((smallest - 20.0).abs() < 1e-9, "{name} {side}: {smallest}");
         }
         let pair = |a: &Body, b: &Body| a.name.starts_with("sleeve") && b.name.starts_with("rod");
         let sliders = assembly.prove_some(pair, |_, _| ());
-        // In the bore, 0.2 mm of air at each side of the rod.
+        // In the bore, each side of the rod has a clearance of 0.2 mm.
         assert_eq!(sliders.meeting.len(), 2);
         for near in &sliders.meeting {
             let seen = near.seen.as_ref().expect("they are near").mm;

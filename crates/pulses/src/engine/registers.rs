@@ -30,7 +30,7 @@ fn port(address: u8) -> *mut u8 {
     with_exposed_provenance_mut(usize::from(address))
 }
 
-/// Stores to a register.
+/// Writes to a register.
 ///
 /// # Safety
 /// The register is one of Timer1's.
@@ -41,9 +41,8 @@ unsafe fn set<T>(register: usize, value: T) {
 }
 
 impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
-    /// Puts the pins low and makes them outputs, in the order of the widths. Call it once,
-    /// before the first [`Engine::submit`]; with interrupts off, if any handler changes
-    /// other pins of these ports.
+    /// Drives the pins low and makes them outputs, in the order of the widths. Call it once, before the first
+    /// [`Engine::submit`]; with interrupts off if any handler changes other pins of these ports.
     #[inline(always)]
     pub fn connect(&self, pins: [Pin; SERVOS]) {
         for (slot, pin) in self.pins.iter().zip(&pins) {
@@ -53,7 +52,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         self.lower();
     }
 
-    /// [`Engine::start`], with the pins of a constant, which are put low first.
+    /// [`Engine::start`] for pins that are a constant: first drives them low.
     ///
     /// # Safety
     /// See [`Engine::start`].
@@ -65,7 +64,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         unsafe { self.start() }
     }
 
-    /// Puts the pins low and makes them outputs.
+    /// Drives the pins low and makes them outputs.
     #[inline(always)]
     fn lower(&self) {
         for [address, mask] in &self.pins[..SERVOS] {
@@ -82,7 +81,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         }
     }
 
-    /// Starts the timer; the first tick comes a slot later. Call it once.
+    /// Starts the timer. The first tick comes one slot later. Call it once.
     ///
     /// # Safety
     /// Interrupts are off, and nothing else uses Timer1 from now on.
@@ -93,7 +92,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         self.allowed.set(u8::MAX);
         // SAFETY: these registers are Timer1's, which is ours.
         unsafe {
-            // A boot loader leaves the timer running for its LED: stop it first.
+            // A boot loader leaves the timer running for its LED, so it is stopped first.
             set(TCCR1B, 0u8);
             set(TCCR1A, 0u8);
             set(TCNT1, 0u16);
@@ -105,8 +104,8 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         }
     }
 
-    /// Edges that came late because an interrupt was held up for longer than the
-    /// lead allows. Stays at 65535.
+    /// The number of edges that were late because an interrupt was delayed for longer than the lead allows. It
+    /// stays at 65535.
     #[inline(always)]
     pub fn late(&self) -> u16 {
         self.late.read()
@@ -125,8 +124,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
             // SAFETY: the port of a servo pin, in a handler, LEAD after the match.
             unsafe {
                 let level_before = port.read_volatile();
-                // A pin that is still high has missed its falling edge: it only goes
-                // down.
+                // A pin that is still high has missed its falling edge, so it may only go low.
                 let change = mask & !level_before;
                 let on_time = store_at([LEAD, 0], port, level_before & !mask, change);
                 if on_time & change == 0 {
@@ -142,9 +140,8 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         // interrupt each other.
         unsafe {
             set(OCR1B, self.fall.get() - u16::from(LEAD));
-            // Had interrupts been off for very long, the match of the slot before, or
-            // of this one with the old count, would wait here and close this slot at
-            // once.
+            // If interrupts were off for very long, a match of the previous slot, or of this slot with the old
+            // count, is pending here and would close this slot at once.
             set(TIFR1, B);
         }
     }

@@ -1,5 +1,5 @@
-//! Four servos on pins 9, 10, 11 and 3 of an Arduino UNO move to and fro once in two seconds, each a
-//! quarter of a cycle after the one before it. The LED blinks with them.
+//! Four servos on pins 9, 10, 11 and 3 of an Arduino UNO swing to and fro once in two seconds, each a quarter of a
+//! cycle after the previous one. The LED blinks with them.
 
 #![no_std]
 #![no_main]
@@ -39,7 +39,7 @@ fn main() -> ! {
     let mut tick = servos::ticks();
     let mut frame = 0;
     loop {
-        // A new tick: there is a frame's time for the next widths, which play together.
+        // At a new tick there is one frame's time to submit the next widths, which are played together.
         if servos::ticks() != tick {
             tick = servos::ticks();
             frame = (frame + 1) % 100;

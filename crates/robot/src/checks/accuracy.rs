@@ -1,5 +1,4 @@
-//! The error of the tables, as the firmware reads them, against the gaits in floating
-//! point.
+//! The error of the tables, as the firmware reads them, compared with the gaits in floating point.
 
 use lizard_core::numbers::units::CYCLE16;
 
@@ -19,10 +18,11 @@ pub struct TableError {
     pub phase: f64,
 }
 
-/// Number of phases that the firmware can be in.
+/// Number of phases that the firmware distinguishes.
 pub(crate) const ALL_PHASES: usize = CYCLE16 as usize;
 
-/// Computes the error of the tables of a gait, by its index, over `count` evenly spaced phases, a divisor of [`ALL_PHASES`].
+/// Computes the error of the tables of gait number `index` over `count` evenly spaced phases, where `count` divides
+/// [`ALL_PHASES`].
 pub(crate) fn worst(gait: &Gait, index: usize, tables: &Tables, count: usize) -> TableError {
     let mut error = TableError {
         max: 0.0,

@@ -1,6 +1,6 @@
-//! The check of every sample of a gait, as the firmware will send it. First by the forward
-//! solution: head, tail, sides and legs against all limits. Then by the firmware's own guard,
-//! which would stop a gait that is closer to a limit than its integers resolve.
+//! The check of every sample of a gait, as the firmware will send it. First by forward kinematics: head, tail,
+//! sides and legs against all limits. Then by the firmware's own guard, which would stop a gait that is closer to a
+//! limit than its integers resolve.
 
 use lizard_core::guard::clearance::Clearance;
 use lizard_core::guard::hazard::{Hazard, Margin};
@@ -16,36 +16,36 @@ use crate::measures::{Measures, consequence, no_loop};
 use crate::tables::Tables;
 use crate::units::{FRAMES_PER_SECOND, PHASES, STEPS_PER_DEGREE};
 
-/// Evenly spaced phases that are checked besides the tables' own samples.
+/// Number of evenly spaced phases that are checked in addition to the tables' own samples.
 const CHECKED: usize = 1024;
-/// Phases at which the speed of a frame is computed.
+/// Number of phases at which the speed over one frame is computed.
 const SPEEDS: usize = 4096;
-/// The largest error of a table, deg.
+/// The largest error allowed in a table, deg.
 const ERROR_LIMIT: f64 = 0.50;
 
 /// The smallest margin of a kind over a cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LeastMargin {
-    /// Name of the margin.
+    /// The condition whose margin it is.
     pub what: Check,
-    /// Value, a sine.
+    /// Value, as a sine.
     pub value: f64,
     /// Phase of the smallest value, 0 to 1.
     pub phase: f64,
 }
 
-/// The fastest turn of a servo between two frames.
+/// The highest speed of a servo between two frames.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Peak {
     /// Index of the servo, 0 to 3.
     pub servo: usize,
     /// Mean speed over the 20 ms from one frame to the next, deg/s.
     pub speed: f64,
-    /// Phase at which the frame begins, 0 to 1.
+    /// Phase at the start of the frame, 0 to 1.
     pub phase: f64,
 }
 
-/// The smallest margins, the strokes and the fastest frame of a gait.
+/// The smallest margins, the strokes and the fastest frame of a checked gait.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Audit {
     /// Smallest type-2 margin, head and tail.
@@ -61,7 +61,7 @@ pub struct Audit {
 }
 
 impl Audit {
-    /// The audit of a gait without samples.
+    /// The audit before the first sample is added.
     pub(crate) const NONE: Self = Self {
         type2: LeastMargin::none(Check::TYPE2[0]),
         type1: LeastMargin::none(Check::TYPE1[0]),
@@ -85,20 +85,20 @@ impl LeastMargin {
     }
 }
 
-/// A limit that a gait breaks.
+/// A limit that a gait breaks, in words.
 pub(crate) struct Broken {
-    /// The consequence for the robot.
+    /// The consequence for the robot, without figures.
     pub meaning: String,
-    /// The figures.
+    /// The figures, and where they occur.
     pub problem: String,
 }
 
 /// Checks a gait against the limits of its robot.
 ///
 /// # Errors
-/// Returns the first travel or loop that a sample breaks; else, over all samples,
-/// for the worst violation of the first limit broken; else for the pose that the firmware's guard
-/// would stop at; else for a frame that is too fast, or a table that is too coarse.
+/// Returns the first sample outside a servo's travel or whose loops do not close; else the worst violation of the
+/// limit that is broken first; else the first pose at which the firmware's guard would stop; else a servo speed
+/// that is too high, or a table that is too coarse.
 pub(crate) fn check(
     gait: &Gait,
     index: usize,
@@ -182,7 +182,7 @@ pub(crate) fn check(
     Ok(found)
 }
 
-/// Converts a hazard of the firmware's guard to the condition of the floating-point check.
+/// Converts a hazard of the firmware's guard to the corresponding condition of the floating-point check.
 fn condition(hazard: &Hazard) -> Check {
     match *hazard {
         Hazard::Margin { margin, .. } => match margin {
@@ -195,7 +195,7 @@ fn condition(hazard: &Hazard) -> Check {
     }
 }
 
-/// True if a violation is of the same limit as an earlier one, and worse.
+/// True if a violation is of the same limit as an earlier one and exceeds it by more.
 fn exceeds(violation: Violation, earlier: Violation) -> bool {
     let by = |v: Violation| (v.value - v.limit).abs();
     violation.what == earlier.what && by(violation) > by(earlier)
@@ -213,7 +213,7 @@ fn phases(table: &TableGait) -> Vec<u16> {
     phases
 }
 
-/// Refuses servo angles outside a travel.
+/// Refuses servo angles outside a servo's travel.
 fn check_travels(robot: &Measures, angles: [f64; 4], phase: f64) -> Result<(), Broken> {
     // The ends of the travel and the sample are both rounded to an angle step.
     const STEP: f64 = 1.0 / STEPS_PER_DEGREE;
@@ -233,7 +233,7 @@ fn check_travels(robot: &Measures, angles: [f64; 4], phase: f64) -> Result<(), B
     Ok(())
 }
 
-/// Finds the fastest frame of a gait at full speed.
+/// Finds the frame of a gait at full speed in which a servo turns fastest.
 fn fastest(gait: &Gait) -> Peak {
     let frame = 1.0 / (FRAMES_PER_SECOND * gait.period);
     let mut peak = Audit::NONE.peak;
@@ -255,7 +255,7 @@ fn fastest(gait: &Gait) -> Peak {
 }
 
 impl Audit {
-    /// Adds the pose at a phase.
+    /// Adds the margins and strokes of the pose at a phase.
     fn add(&mut self, solution: &Solution, phase: f64) {
         for (what, value) in solution.margins.iter() {
             let kinds = [

@@ -16,8 +16,7 @@ use crate::measures::servo::FORWARD;
 use crate::tables::Tables;
 use crate::units::{FRAMES_PER_SECOND, STEPS_PER_DEGREE};
 
-/// A gait of robot.toml, every sample of which has been checked, in floating point and in the
-/// firmware's tables.
+/// A gait of robot.toml whose every sample has been checked, in floating point and in the firmware's tables.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CheckedGait {
     gait: Gait,
@@ -28,7 +27,7 @@ pub struct CheckedGait {
 }
 
 impl CheckedGait {
-    /// Checks a gait against the measures of its robot and by the firmware's own guard.
+    /// Checks a gait against the measures of its robot and with the firmware's own guard.
     pub(crate) fn new(
         gait: Gait,
         index: usize,
@@ -55,7 +54,7 @@ impl CheckedGait {
         &self.tables.gaits[self.index]
     }
 
-    /// Name of the gait; with a blank for each dash also its console command.
+    /// Name of the gait; with its dashes replaced by blanks, it is also the console command.
     pub fn name(&self) -> &str {
         &self.gait.name
     }
@@ -75,7 +74,7 @@ impl CheckedGait {
         self.gait.reversed
     }
 
-    /// True if a servo moves in the course of a cycle.
+    /// True if any servo moves in the course of a cycle.
     pub fn moves(&self) -> bool {
         self.table().channels.iter().any(|channel| {
             let wave = &self.tables.waves[usize::from(channel.wave)];
@@ -88,7 +87,7 @@ impl CheckedGait {
         &self.gait.strides
     }
 
-    /// The gait as bars; `None` if it stands or follows a path.
+    /// The gait as bars; `None` if it does not move or follows a path.
     pub fn bars(&self) -> Option<Bars> {
         self.moves().then(|| Bars::of(&self.gait)).flatten()
     }
@@ -98,13 +97,12 @@ impl CheckedGait {
         self.gait.neutral
     }
 
-    /// The phase, 0 to 1, at a time in s after a start at phase 0, at full speed.
+    /// The phase, 0 to 1, at a time in s after a start at phase 0 at full speed.
     pub fn phase(&self, seconds: f64) -> f64 {
         self.gait.phase(seconds)
     }
 
-    /// The legs' sweeps from neutral at a phase of 0 to 1, deg, foot forward
-    /// positive, servo order.
+    /// The legs' sweeps from neutral at a phase of 0 to 1, deg, positive if the foot is forward, servo order.
     pub fn sweeps(&self, phase: f64) -> [f64; 4] {
         self.gait.sweeps(phase)
     }
@@ -119,23 +117,22 @@ impl CheckedGait {
         self.angles(phase).into()
     }
 
-    /// The servos' sweeps at a phase of 1/65536 cycle as the firmware has them:
-    /// 1/65536 turn from neutral, counter-clockwise positive, servo order.
+    /// The servos' sweeps at a phase in 1/65536 cycle as the firmware computes them: in 1/65536 turn from neutral,
+    /// counter-clockwise positive, servo order.
     pub fn table_sweeps(&self, phase: u16) -> [i16; 4] {
         self.tables.sweeps(self.index, phase)
     }
 
-    /// The servo angles at a phase of 1/65536 cycle as the firmware has them: deg,
-    /// chassis frame, servo order.
+    /// The servo angles at a phase in 1/65536 cycle as the firmware computes them: deg, chassis frame, servo order.
     pub fn table_angles(&self, phase: u16) -> [f64; 4] {
         self.gait.table_angles(self.table_sweeps(phase))
     }
 
-    /// The frames of one cycle at full speed from phase 0 on: the time of each in s, and its
-    /// phase in 1/65536 cycle. The last is the first that completes the cycle.
+    /// The frames of one cycle at full speed, beginning at phase 0: the time of each in s, and its phase in 1/65536
+    /// cycle. The last one is the first that completes the cycle.
     pub fn frames(&self) -> impl Iterator<Item = (f64, u16)> + use<> {
         let increment = self.table().increment;
-        // 1.1 s are 55 frames, though 1.1 * 50.0 is a little more.
+        // 1.1 s are 55 frames, although 1.1 * 50.0 is slightly more in floating point.
         const SLACK: f64 = 1e-9;
         let frames = (self.gait.period * FRAMES_PER_SECOND - SLACK).ceil() as i32;
         (0..=frames).map(move |frame| {
@@ -144,7 +141,7 @@ impl CheckedGait {
         })
     }
 
-    /// Margins, strokes and speeds that the check of every sample found.
+    /// Margins, strokes and speeds found by the check of every sample.
     pub fn audit(&self) -> &Audit {
         &self.audit
     }
@@ -159,17 +156,16 @@ impl CheckedGait {
         accuracy::worst(&self.gait, self.index, &self.tables, count)
     }
 
-    /// Predicts one cycle on this ground, beginning at phase 0, by the contact model. If legs
-    /// lag, it is the second cycle, which all later ones repeat.
+    /// Predicts one cycle on this ground, from phase 0, with the contact model. If legs lag, it is the second
+    /// cycle, which all later ones repeat.
     ///
-    /// The parts that depend on ties are found with rigid legs, because ties are between pads.
+    /// The parts that depend on ties are determined with rigid legs, because ties are between pads.
     pub fn predict(&self, ground: &Ground) -> Prediction {
         let known = ground.rigid().predict(self.cycle(COARSE));
         known.keep_known(self.walked(ground).travel)
     }
 
-    /// Follows one cycle on this ground, also if its result depends on ties. If legs lag, it
-    /// is the second cycle.
+    /// Simulates one cycle on this ground, even if its result depends on ties. If legs lag, it is the second cycle.
     pub fn walked(&self, ground: &Ground) -> Walked {
         let mut walker = Walker::new(*ground, self.sweeps(self.phase(0.0)));
         let mut steps = STEPS;
@@ -191,14 +187,13 @@ impl CheckedGait {
         }
     }
 
-    /// Follows the second cycle on this ground frame by frame as the firmware sends it, with servos
-    /// that have these motors; `pace` is 1 for the gait's own.
+    /// Simulates the second cycle on this ground frame by frame, as the firmware sends it, with servos that have
+    /// these motors. `pace` is 1 for the gait's own speed.
     pub fn driven(&self, ground: &Ground, motors: &Motors, pace: f64) -> Travel {
         self.driven_scaled(ground, motors, pace, 1.0)
     }
 
-    /// Follows that cycle with servos that turn `scale` times as far as the firmware takes for
-    /// granted.
+    /// Simulates that cycle with servos that turn `scale` times as far as the firmware assumes.
     pub(crate) fn driven_scaled(
         &self,
         ground: &Ground,
@@ -231,15 +226,15 @@ impl CheckedGait {
     }
 }
 
-/// Steps in a cycle of rigid legs; twice as many change no result by 0.01 mm.
+/// Steps in a cycle with rigid legs; twice as many change no result by 0.01 mm.
 const STEPS: usize = 1000;
-/// Steps in a cycle of legs that lag, which take longer to compute; four times as many change
-/// no result by 0.05 mm.
+/// Steps in a cycle with legs that lag, which takes longer to compute; four times as many change no result by 0.05
+/// mm.
 const SPRUNG: usize = 250;
-/// Steps in a cycle for finding ties, which takes longer.
+/// Steps in a cycle for detecting ties, which takes longer to compute.
 const COARSE: usize = 250;
 
-/// The result of a cycle that was followed step by step.
+/// The result of a cycle simulated step by step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Walked {
     /// The movement of the body.
@@ -266,7 +261,7 @@ mod tests {
                     gait.name()
                 );
                 for (seconds, phase) in frames {
-                    // A whole cycle is phase 0 again.
+                    // A complete cycle is phase 0 again.
                     let error = (f64::from(phase) / 65536.0 - gait.phase(seconds)).rem_euclid(1.0);
                     assert!(
                         error.min(1.0 - error) < 1e-4,

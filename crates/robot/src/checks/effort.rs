@@ -1,50 +1,50 @@
-//! The effort of the servos in a gait: torque and rate beside the line of their motors.
+//! The effort of the servos in a gait: torque and speed compared with the torque-speed lines of their motors.
 //!
-//! A motor's line leads from its stall torque to its no-load rate. A servo that needs a torque at a
-//! rate uses torque / stall + rate / no-load rate of it; that is also the share of the supply's
-//! voltage that its motor needs. Above 1 it falls behind its pulses. The pads' friction, pins and
-//! sliders ask for the same torque at any pace, the rotor for less at a slower one.
+//! A motor's line runs from its stall torque to its no-load speed. A servo that needs a torque at a speed uses the
+//! share torque / stall + speed / no-load speed of its line; this is also the share of the supply voltage that its
+//! motor needs. Above 1 the servo falls behind its pulses. Friction of pads, pins and sliders takes the same torque
+//! at any pace; the rotor's inertia takes less at a lower pace.
 
 use lizard_contact::{Ground, Motor, Motors, Walker};
 
 use crate::checks::checked_gait::CheckedGait;
 
-/// Duration of a step, s.
+/// Duration of a simulation step, s.
 const STEP: f64 = 0.0025;
-/// Share of the line from which a servo has little left: play, a cold gear or a wire may take it.
+/// Share of the line from which a servo has little reserve: play, cold gears or a thin wire may use it up.
 pub const TIGHT: f64 = 0.9;
-/// A motor that many times as strong and as fast follows every gait.
+/// Factor on torque and speed with which a motor follows every gait exactly.
 const STRONG: f64 = 1e6;
-/// Rounds of the search for a pace.
+/// Iterations of the search for a pace.
 const ROUNDS: usize = 20;
 
-/// The torques of a servo at a moment, and its rate.
+/// The torques and the speed of a servo at one moment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Sample {
-    /// Torque of pads, joints and body, N mm.
+    /// Torque for pads, joints and body, N mm.
     load: f64,
-    /// Torque that turns the rotor faster, N mm.
+    /// Torque that accelerates the rotor, N mm.
     rotor: f64,
-    /// Rate, deg/s.
+    /// Speed, deg/s.
     rate: f64,
 }
 
 /// The effort of the servos over a cycle of a gait.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Effort {
-    /// The servos' motors on the supply of [`Effort::of`], and their samples at full pace.
+    /// The servos' motors on the supply of [`Effort::of`], and their samples at the gait's own pace.
     servos: [(Motor, Vec<Sample>); 4],
 }
 
 impl Effort {
-    /// Measures a gait on this ground with servos that follow it exactly.
+    /// Measures a gait on this ground, with servos that follow it exactly.
     #[must_use]
     pub fn of(gait: &CheckedGait, ground: &Ground, motors: &Motors) -> Self {
         let mut servos = motors.each.map(|motor| (motor, Vec::new()));
         if !gait.moves() {
             return Self { servos };
         }
-        // With their own gain and damping, but without a limit; the rotor is added afterwards.
+        // The motors keep their gain and damping, but have no limits; the rotor is added afterwards.
         let strong = Motors {
             each: motors.each.map(|motor| Motor {
                 stall: motor.stall * STRONG,
@@ -82,8 +82,8 @@ impl Effort {
         Self { servos }
     }
 
-    /// The largest share of a servo's line that the gait uses at a pace (1 is its own), on a
-    /// supply given as a share of that of [`Effort::of`].
+    /// The largest share of a servo's line that the gait uses at a pace (1 is its own), on a supply that is given
+    /// as a share of that in [`Effort::of`].
     #[must_use]
     pub fn line_share(&self, pace: f64, supply: f64) -> f64 {
         let of_servo = |(motor, samples): &(Motor, Vec<Sample>)| {
@@ -97,8 +97,7 @@ impl Effort {
         self.servos.iter().map(of_servo).fold(0.0, f64::max)
     }
 
-    /// The greatest pace up to the gait's own at which no servo is above its line; 0 if it is
-    /// above it at any pace.
+    /// The highest pace, up to the gait's own, at which no servo exceeds its line; 0 if one does at any pace.
     #[must_use]
     pub fn pace(&self, supply: f64) -> f64 {
         if self.line_share(1.0, supply) <= 1.0 {

@@ -1,9 +1,8 @@
-//! The checks of every gait before it may be walked.
+//! The checks that every gait must pass before it may be walked.
 //!
-//! One bad sample of one gait can lock the linkage or strip a servo's gears. So every
-//! sample is solved as the firmware will send it, with the robot's true lengths and by the
-//! core's own integers. A gait that passes is a [`CheckedGait`]: it may be walked, and the
-//! contact model says where it leads.
+//! One bad sample of one gait can lock the linkage or strip a servo's gears. So every sample is solved as the
+//! firmware will send it, with the robot's true lengths and with the core's own integers. A gait that passes is a
+//! [`CheckedGait`]: it may be walked, and the contact model predicts its movement.
 
 mod accuracy;
 mod audit;

@@ -1,13 +1,12 @@
-//! Changes of single values in the text of a robot.toml: comments, blanks and all other lines
-//! stay as they are.
+//! Edits of single values in the text of a robot.toml. Comments, blanks and all other lines stay as they are.
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// The keys of the hips' distances ahead and to the side. Left out, they follow from the legs.
+/// The keys of the hips' distances ahead and to the side. If left out, they follow from the legs.
 pub const HIPS: [&str; 2] = ["leg.hip_forward", "leg.hip_side"];
 
-/// Keys that a robot.toml may leave out, and that are added when they get a value.
+/// Optional keys of a robot.toml, which are added when they get a value.
 const OPTIONAL: [&str; 16] = [
     HIPS[0],
     HIPS[1],
@@ -27,7 +26,7 @@ const OPTIONAL: [&str; 16] = [
     "servo.spin_up_ms",
 ];
 
-/// The error for a key that the text does not have, or that cannot be changed.
+/// The error for a key that the text does not have or that cannot be changed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NoSuchKey(
     /// The full name of the key.
@@ -40,8 +39,8 @@ impl std::fmt::Display for NoSuchKey {
     }
 }
 
-/// Sets the number of a key, such as `links.l1`. A key that may be left out is added below the
-/// last line of its table, and a missing table at the end of the text.
+/// Sets the number of a key, such as `links.l1`. An optional key that is missing is added after the last line of
+/// its table, and a missing table at the end of the text.
 ///
 /// # Errors
 /// Fails if the text is not TOML or has no number at this key.
@@ -61,7 +60,7 @@ pub fn with_numbers(text: &str, key: &str, values: &[f64]) -> Result<String, NoS
     })
 }
 
-/// Adds a comment behind the line of a key, in place of one that begins with the same word.
+/// Adds a comment at the end of a key's line, replacing one that begins with the same word.
 ///
 /// # Errors
 /// Fails if the text is not TOML or does not have the key.
@@ -114,7 +113,7 @@ fn with_value(
         Some(entries) => entries.get_ref().as_table().ok_or_else(missing)?,
         None => &DeTable::new(),
     };
-    // A table of its own, as [servo.A1], has its lines elsewhere.
+    // A subtable such as [servo.A1] has its lines elsewhere.
     let own = entries.values().filter(|value| !value.get_ref().is_table());
     let Some(last) = own.map(|value| value.span().end).max() else {
         let end = if text.ends_with('\n') { "" } else { "\n" };
@@ -125,7 +124,7 @@ fn with_value(
     let end = line_end(text, last);
     let mut longer = text.to_string();
     longer.insert_str(end, &format!("\n{line}"));
-    // In a table that is written on one line, the new line would belong to another table.
+    // If the table is written on one line, the new line would belong to another table.
     let document = DeTable::parse(&longer).map_err(|_| missing())?;
     match find(document.get_ref(), key) {
         Some(added) if added.span().start > end => Ok(longer.clone()),
@@ -133,7 +132,7 @@ fn with_value(
     }
 }
 
-/// Removes the line of a key that may be left out. Without the key the text stays as it is.
+/// Removes the line of an optional key. Without the key, the text stays as it is.
 ///
 /// # Errors
 /// Fails if the key is in a table that is written on one line.
@@ -154,7 +153,7 @@ pub fn without(text: &str, key: &str) -> Result<String, NoSuchKey> {
     Ok(text[..start].to_string() + &text[end..])
 }
 
-/// Adds the table of a gait, in place of the gait of the same name or at the end of the text.
+/// Adds the table of a gait, in place of the gait with the same name or at the end of the text.
 pub fn with_gait(text: &str, name: &str, table: &str) -> String {
     let (mut result, is_replaced) = replace_gait(text, name, table);
     if !is_replaced {
@@ -169,7 +168,7 @@ pub fn without_gait(text: &str, name: &str) -> String {
     replace_gait(text, name, "").0
 }
 
-/// Puts lines in the place of a gait's tables; returns true if the gait was there.
+/// Replaces a gait's tables by `table`; also returns true if the gait existed.
 fn replace_gait(text: &str, name: &str, table: &str) -> (String, bool) {
     let (header, below) = (format!("[gait.{name}]"), format!("[gait.{name}."));
     let (mut result, mut is_own, mut is_replaced) = (String::new(), false, false);
@@ -185,7 +184,7 @@ fn replace_gait(text: &str, name: &str, table: &str) -> (String, bool) {
                 }
             }
         }
-        // A comment below the last key may belong to the next table.
+        // A comment after the last key may belong to the next table.
         if !is_own || head.starts_with('#') {
             result += line;
             result.push('\n');
@@ -204,8 +203,8 @@ pub struct WrittenRoutine {
     pub steps: Vec<String>,
 }
 
-/// The routines of a text in its order, so that one with a mistake can be shown and mended. Without those
-/// whose steps are no strings.
+/// The routines of a text in their order, checked or not, so that one with a mistake can be shown and corrected.
+/// Routines whose steps are not strings are left out.
 pub fn routines(text: &str) -> Vec<WrittenRoutine> {
     let Ok(document) = DeTable::parse(text) else {
         return Vec::new();
@@ -229,8 +228,8 @@ pub fn routines(text: &str) -> Vec<WrittenRoutine> {
     entries.into_iter().filter_map(written).collect()
 }
 
-/// Sets the steps of a routine; a missing one is added at the end of the text. Its other lines, such as `repeat`,
-/// stay as they are.
+/// Sets the steps of a routine. A missing routine is added at the end of the text. The routine's other lines,
+/// such as `repeat`, stay as they are.
 pub fn with_steps(text: &str, name: &str, steps: &[String]) -> String {
     let steps: Vec<_> = steps.iter().map(|step| format!("{step:?}")).collect();
     let steps = format!("[{}]", steps.join(", "));
@@ -251,7 +250,7 @@ pub fn with_steps(text: &str, name: &str, steps: &[String]) -> String {
     format!("{text}{end}\n[routine.{key}]\nsteps = {steps}\n")
 }
 
-/// The value of a key of dotted names.
+/// Finds the value of a dotted key.
 fn find<'a>(table: &'a DeTable<'a>, key: &str) -> Option<&'a Spanned<DeValue<'a>>> {
     match key.split_once('.') {
         Some((first, rest)) => find(table.get(first)?.get_ref().as_table()?, rest),
@@ -259,7 +258,7 @@ fn find<'a>(table: &'a DeTable<'a>, key: &str) -> Option<&'a Spanned<DeValue<'a>
     }
 }
 
-/// The end of the line that this position is in.
+/// The end of the line that contains this position.
 fn line_end(text: &str, from: usize) -> usize {
     text[from..]
         .find('\n')
@@ -289,7 +288,7 @@ mod tests {
         assert_eq!(changed, expected);
         let again = with_number(&changed, "leg.hip_side", 37.5).expect("there");
         assert_eq!(again, expected.replace("36.0", "37.5"));
-        // The lines of [servo.A1] are its own.
+        // The lines of [servo.A1] do not belong to [servo].
         let servo = with_number(TEXT, "servo.volts", 4.5).expect("it may be set");
         assert_eq!(servo, format!("{TEXT}\n[servo]\nvolts = 4.5\n"));
         for text in [

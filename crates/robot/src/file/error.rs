@@ -1,4 +1,4 @@
-//! Mistakes in robot.toml: the message that its author reads, and its place in the file.
+//! Mistakes in robot.toml: the message that its author reads, and the location in the file.
 
 use std::fmt;
 
@@ -9,9 +9,9 @@ pub struct Error {
     pub file: String,
     /// Line of the key, counted from 1; `None` if the mistake belongs to no line.
     pub line: Option<usize>,
-    /// Full name of the key, such as `servo.A1.pin`; empty for a mistake of the file.
+    /// Full name of the key, such as `servo.A1.pin`; empty if the mistake concerns the whole file.
     pub key: String,
-    /// The consequence of the mistake for the robot, without keys and figures; `None` where `problem` says it.
+    /// The consequence of the mistake for the robot, without keys and figures; `None` if `problem` states it.
     pub meaning: Option<String>,
     /// The message without file, line, key and meaning.
     pub problem: String,
@@ -27,7 +27,7 @@ impl fmt::Display for Error {
         if !self.key.is_empty() {
             place += &format!(": {}", self.key);
         }
-        // A reader first wants to know what is wrong with the robot, then where the file says so.
+        // The reader first wants to know what is wrong with the robot, then where the file says so.
         if let Some(meaning) = &self.meaning {
             return write!(f, "{meaning}: {} ({place})", self.problem);
         }
@@ -65,7 +65,7 @@ impl Fault {
         }
     }
 
-    /// A mistake whose message has a subject of its own: "`key`: the point ...".
+    /// A mistake whose message has its own subject: "`key`: the point ...".
     pub fn clause(key: impl Into<String>, problem: impl Into<String>) -> Self {
         Self {
             is_clause: true,
@@ -73,7 +73,7 @@ impl Fault {
         }
     }
 
-    /// The same mistake with what it means for the robot: "in "walk" the left front leg would lock".
+    /// The same mistake with its consequence for the robot: "in "walk" the left front leg would lock".
     pub fn meaning(self, meaning: impl Into<String>) -> Self {
         Self {
             meaning: Some(meaning.into()),
@@ -103,8 +103,7 @@ impl Fault {
     }
 }
 
-/// Formats a number as its author wrote it, or with an exponent if it would fill a line
-/// with zeros.
+/// Formats a number as its author wrote it, or with an exponent if it would otherwise have many zeros.
 pub(crate) fn short(value: f64) -> String {
     if value != 0.0 && !(1e-6..1e9).contains(&value.abs()) {
         format!("{value:e}")
@@ -113,11 +112,11 @@ pub(crate) fn short(value: f64) -> String {
     }
 }
 
-/// A hint for a word that is not among those allowed: the nearest word, or all of them.
+/// A hint for a word that is not allowed: the most similar allowed word, or all of them.
 pub(crate) fn hint(word: &str, all: &[&str]) -> String {
     let near = all.iter().map(|known| (distance(word, known), known)).min();
     match near {
-        // Two letters of a word may be wrong, but not one of two.
+        // Up to two letters of a word may be wrong, but none in a word of two letters.
         Some((d, known)) if d == 0 || (d <= 2 && known.len() > 2 && d < known.len()) => {
             format!("did you mean \"{known}\"?")
         }
@@ -125,7 +124,7 @@ pub(crate) fn hint(word: &str, all: &[&str]) -> String {
     }
 }
 
-/// The Levenshtein distance of two words, ignoring case: the letters to change, add or remove.
+/// The Levenshtein distance of two words, ignoring case: the number of letters to change, add or remove.
 fn distance(a: &str, b: &str) -> usize {
     let b: Vec<char> = b.to_lowercase().chars().collect();
     let mut row: Vec<usize> = (0..=b.len()).collect();

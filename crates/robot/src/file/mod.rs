@@ -1,8 +1,8 @@
 //! robot.toml as a file: its text, its tables, and the message for every mistake in them.
 //!
-//! People write robot.toml by hand, so most files have mistakes at first. A mistake should
-//! cost one look: the error names the file, the line, the key, the mistake and its
-//! correction. Nothing here knows the meaning of a value.
+//! People write robot.toml by hand, so most files have mistakes at first. A mistake should be quick to find: the
+//! error names the file, the line, the key, the mistake and its correction. This module does not know the meaning
+//! of any value.
 
 pub mod edit;
 mod error;

@@ -1,5 +1,5 @@
-//! robot.toml as typed values. A [`Section`] is one table of the file; it refuses unknown
-//! keys, and every error has the full name of its key.
+//! A reader of robot.toml as typed values. A [`Section`] is one table of the file; it refuses unknown keys, and
+//! every error has the full name of its key.
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -7,8 +7,7 @@ use toml::de::{DeTable, DeValue};
 use crate::file::error::{Checked, Error, Fault, hint};
 use crate::file::syntax::explain_mistake;
 
-/// Parses the text of a robot file and reads it with `read`. A byte order mark at the start is
-/// skipped.
+/// Parses the text of a robot file and reads it with `read`. Skips a byte order mark at the start.
 ///
 /// # Errors
 /// Returns the first mistake in the text, with its line.
@@ -28,11 +27,11 @@ pub(crate) fn parse<T>(text: &str, read: impl Fn(&DeTable) -> Checked<T>) -> Res
     })
 }
 
-/// The position in the text of a key, or of the innermost table in its name that exists.
+/// The position in the text of a key, or of the innermost existing table in its name.
 fn position(mut table: &DeTable, key: &str) -> Option<usize> {
     let (mut rest, mut found) = (key, None);
     loop {
-        // A quoted key may have a dot in it, so the longest one counts.
+        // A quoted key may contain a dot, so the longest matching key counts.
         let after = |known: &str| {
             let after = rest.strip_prefix(known)?;
             (after.is_empty() || after.starts_with(['.', '['])).then_some(after)
@@ -52,15 +51,15 @@ fn position(mut table: &DeTable, key: &str) -> Option<usize> {
     }
 }
 
-/// A read of a key, which the reference of all keys is made from.
+/// A record of one read of a key. The reference of all keys is generated from these.
 #[cfg(test)]
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum KeyRead {
-    /// A table may have this key.
+    /// The table may have this key.
     Allowed,
     /// The key is a table, or an array of tables.
     Table,
-    /// The key is a number, or numbers, with a range, a unit, and a default if it may be left out.
+    /// The key is a number or numbers, with a range, a unit, and a default if it is optional.
     Number {
         range: (f64, f64),
         unit: String,
@@ -70,7 +69,7 @@ pub(crate) enum KeyRead {
 
 #[cfg(test)]
 thread_local! {
-    /// The reads of this thread: full names, in order.
+    /// The reads of this thread: full names of the keys, in order.
     pub(crate) static READS: std::cell::RefCell<Vec<(String, KeyRead)>> = const { std::cell::RefCell::new(Vec::new()) };
 }
 
@@ -82,7 +81,7 @@ pub(crate) struct Section<'a> {
 }
 
 impl<'a> Section<'a> {
-    /// Opens the file's own table, which may have only the keys `allowed`.
+    /// Opens the file's root table, which may have only the keys `allowed`.
     pub fn root(table: &'a DeTable<'a>, allowed: &[&str]) -> Checked<Self> {
         Self {
             key: String::new(),
@@ -96,7 +95,7 @@ impl<'a> Section<'a> {
         self.open(name)?.only(allowed)
     }
 
-    /// Opens the table `name` with any keys.
+    /// Opens the table `name`, which may have any keys.
     pub fn open(&self, name: &str) -> Checked<Self> {
         #[cfg(test)]
         self.note(name, KeyRead::Table);
@@ -125,7 +124,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Refuses keys of an earlier form of the file; `instead` says what to write.
+    /// Refuses keys of an earlier version of the file; `instead` says what to write.
     pub fn moved(&self, names: &[&str], instead: &str) -> Checked<()> {
         match names.iter().find(|name| self.has(name)) {
             Some(name) => {
@@ -136,7 +135,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// The keys in the order of the file.
+    /// The table's keys in the order of the file.
     pub fn names(&self) -> Vec<&'a str> {
         let mut keys: Vec<_> = self.table.keys().collect();
         keys.sort_by_key(|key| key.span().start);
@@ -162,7 +161,7 @@ impl<'a> Section<'a> {
         Fault::new(self.path(name), problem)
     }
 
-    /// A number within `min` to `max`, both allowed.
+    /// Reads a number from `min` to `max`, both included.
     pub fn number(&self, name: &str, min: f64, max: f64, unit: &str) -> Checked<f64> {
         #[cfg(test)]
         self.note_number(name, (min, max), unit, None);
@@ -172,7 +171,7 @@ impl<'a> Section<'a> {
         self.within(name, value, (min, max), unit)
     }
 
-    /// The number of a key, or `default` if the key is left out.
+    /// Reads the number of a key; returns `default` if the key is left out.
     pub fn number_or(
         &self,
         name: &str,
@@ -190,7 +189,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Refuses a number that is not less than the one of another key of this table.
+    /// Refuses a number that is not less than that of another key of this table.
     pub fn less(&self, name: &str, value: f64, other: &str, limit: f64) -> Checked<()> {
         if value < limit {
             return Ok(());
@@ -199,7 +198,7 @@ impl<'a> Section<'a> {
         Err(self.fault(name, message))
     }
 
-    /// A string.
+    /// Reads a string.
     pub fn text(&self, name: &str) -> Checked<&'a str> {
         const EXPECTED: &str = "a string";
         let value = self.value(name, EXPECTED)?;
@@ -207,7 +206,7 @@ impl<'a> Section<'a> {
         text.ok_or_else(|| self.wrong_type(name, value, EXPECTED))
     }
 
-    /// An array of exactly `N` numbers within `min` to `max`.
+    /// Reads an array of exactly `N` numbers from `min` to `max`.
     pub fn numbers<const N: usize>(
         &self,
         name: &str,
@@ -236,7 +235,7 @@ impl<'a> Section<'a> {
         Ok(numbers)
     }
 
-    /// An array of strings.
+    /// Reads an array of strings.
     pub fn words(&self, name: &str) -> Checked<Vec<&'a str>> {
         const EXPECTED: &str = "an array of strings";
         let value = self.value(name, EXPECTED)?;
@@ -246,7 +245,7 @@ impl<'a> Section<'a> {
         words.ok_or_else(|| self.wrong_type(name, value, EXPECTED))
     }
 
-    /// An array of tables that may have only the keys `allowed`; empty if the key is left out.
+    /// Reads an array of tables that may have only the keys `allowed`; empty if the key is left out.
     pub fn list(&self, name: &str, allowed: &[&str]) -> Checked<Vec<Section<'a>>> {
         #[cfg(test)]
         self.note(name, KeyRead::Table);
@@ -314,7 +313,7 @@ impl<'a> Section<'a> {
     }
 }
 
-/// The value of an integer or a finite float; TOML's nan and inf are no numbers here.
+/// The value of an integer or a finite float; TOML's nan and inf are refused.
 fn number(value: &DeValue) -> Option<f64> {
     let text = match value {
         DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str(),

@@ -1,5 +1,4 @@
-//! Gait definitions in robot.toml: each has a waveform, a path, or another gait from
-//! which it is derived.
+//! Gait definitions in robot.toml: each has a waveform, a path, or another gait from which it is derived.
 
 use std::collections::HashMap;
 
@@ -75,8 +74,8 @@ pub(crate) fn gaits(root: &Section, body: &Measures) -> Checked<Vec<Gait>> {
     }
 }
 
-/// Refuses two gaits or routines that the EEPROM cannot tell apart: it keeps that of `boot` by a number
-/// that is made of its name.
+/// Refuses two gaits or routines that the EEPROM cannot tell apart: it stores the one for `boot` as a number
+/// computed from its name.
 pub(super) fn check_keys(section: &Section, names: &[&str]) -> Checked<()> {
     let mut names_by_key = HashMap::new();
     for name in names {
@@ -117,7 +116,7 @@ pub(super) fn check_name(name: &str, kind: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Reads gaits by name, each after those that it refers to.
+/// A reader of gaits by name. It reads each gait after those to which it refers.
 struct Resolver<'a> {
     section: Section<'a>,
     names: Vec<&'a str>,
@@ -175,7 +174,7 @@ impl<'a> Resolver<'a> {
     }
 }
 
-/// Finds the one key that defines this gait.
+/// Finds the single key that defines this gait.
 fn definition_key(table: &Section) -> Checked<&'static str> {
     let path = table.has("head") || table.has("tail");
     let mut definitions: Vec<&'static str> = REFERENCES
@@ -194,7 +193,7 @@ fn definition_key(table: &Section) -> Checked<&'static str> {
     }
 }
 
-/// Refuses keys that have no meaning together with `with`.
+/// Refuses keys that are meaningless together with `with`.
 fn allow_only(table: &Section, allowed: &[&str], with: &str) -> Checked<()> {
     match table
         .names()
@@ -339,7 +338,7 @@ fn read_legs(
     Ok(values)
 }
 
-/// Reads the order of swings: for each leg, in servo order, its place.
+/// Reads the order of swings: for each leg, in servo order, its position in the order.
 fn read_order(table: &Section) -> Checked<[usize; 4]> {
     let words = table.words("order")?;
     let fault = || table.fault("order", "must list each of LF, RF, RH, LH exactly once");

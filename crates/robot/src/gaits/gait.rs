@@ -11,7 +11,7 @@ pub struct Stride {
     pub waveform: Waveform,
     /// Phase at which the waveform begins, 0 to 1.
     pub start: f64,
-    /// Sweep at the waveform's 1, deg; negative if the leg runs against the others.
+    /// Sweep where the waveform is 1, deg; negative if the leg runs opposite to the others.
     pub amplitude: f64,
 }
 
@@ -23,8 +23,7 @@ impl Stride {
         amplitude: 0.0,
     };
 
-    /// The leg's sweep from neutral at a phase of 0 to 1, deg, foot forward
-    /// positive.
+    /// The leg's sweep from neutral at a phase of 0 to 1, deg, positive if the foot is forward.
     pub fn sweep(&self, phase: f64) -> f64 {
         self.amplitude * self.waveform.at(phase - self.start)
     }
@@ -33,7 +32,7 @@ impl Stride {
 /// A gait of robot.toml with its references resolved.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Gait {
-    /// Name of the gait; with a blank for each dash also its console command.
+    /// Name of the gait; with its dashes replaced by blanks, it is also the console command.
     pub name: String,
     /// Time of one cycle at full speed, s.
     pub period: f64,
@@ -46,14 +45,13 @@ pub(crate) struct Gait {
 }
 
 impl Gait {
-    /// The phase at a time in s after a start at phase 0, at full speed.
+    /// The phase at a time in s after a start at phase 0 at full speed.
     pub fn phase(&self, seconds: f64) -> f64 {
         let cycles = seconds / self.period;
         (if self.reversed { -cycles } else { cycles }).rem_euclid(1.0)
     }
 
-    /// The legs' sweeps from neutral at a phase, deg, foot forward positive,
-    /// servo order.
+    /// The legs' sweeps from neutral at a phase, deg, positive if the foot is forward, servo order.
     pub fn sweeps(&self, phase: f64) -> [f64; 4] {
         self.strides.each_ref().map(|stride| stride.sweep(phase))
     }
@@ -64,8 +62,7 @@ impl Gait {
         std::array::from_fn(|i| self.neutral[i] + FORWARD[i] * sweeps[i])
     }
 
-    /// The servo angles at sweeps from neutral as the firmware has them, in angle steps: deg,
-    /// chassis frame, servo order.
+    /// Converts sweeps from neutral in the firmware's angle steps to servo angles: deg, chassis frame, servo order.
     pub fn table_angles(&self, sweeps: [i16; 4]) -> [f64; 4] {
         std::array::from_fn(|i| self.neutral[i] + f64::from(sweeps[i]) / STEPS_PER_DEGREE)
     }

@@ -1,9 +1,8 @@
-//! Gaits as robot.toml defines them, in floating point.
+//! Gaits in floating point, as robot.toml defines them.
 //!
-//! A gait is four legs that repeat a movement, each at a phase of its own. An author writes
-//! it as a stroke, as the path of the head or the tail, or as another gait with changes. Here
-//! each becomes the sweep of a leg at any phase, the reference for tables, pulses and
-//! predictions.
+//! A gait is a movement that four legs repeat, each with its own phase. An author defines it by a waveform, by the
+//! path of the head or the tail, or by another gait with changes. Here each definition becomes the sweep of a leg
+//! at any phase, the reference for tables, pulses and predictions.
 
 mod bars;
 pub(crate) mod define;

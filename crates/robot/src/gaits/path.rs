@@ -1,29 +1,29 @@
-//! The closed curve along which a gait leads the point of head or tail.
+//! The closed curve along which a gait moves the point of head or tail.
 
 use std::f64::consts::TAU;
 
 use lizard_kinematics::Vector;
 
-/// One term of a path's coordinate: `amplitude * sin(2 pi (k phase + shift))`.
+/// One harmonic of a path's coordinate: `amplitude * sin(2 pi (k phase + shift))`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Harmonic {
-    /// Periods in a cycle, a whole number so that the path closes.
+    /// Number of periods in a cycle, a whole number so that the path closes.
     pub k: f64,
     /// Amplitude, mm.
     pub amplitude: f64,
-    /// Shift of the phase, in periods of this term.
+    /// Phase shift, in periods of this harmonic.
     pub shift: f64,
 }
 
-/// A closed curve: in each coordinate a centre and a sum of harmonics, mm from
-/// the middle of the base, outward positive in y.
+/// A closed curve: a centre plus a sum of harmonics in each coordinate, mm from the middle of the base; y is
+/// positive outward.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Path {
     /// The mean point, mm.
     pub centre: [f64; 2],
-    /// Terms of the coordinate across.
+    /// Harmonics of the coordinate across.
     pub x: Vec<Harmonic>,
-    /// Terms of the coordinate outward.
+    /// Harmonics of the outward coordinate.
     pub y: Vec<Harmonic>,
 }
 

@@ -1,5 +1,5 @@
-//! Routines of robot.toml: gaits one after another, each for some cycles or some time or until a
-//! contact closes, rests, and waits for a button.
+//! Routines of robot.toml: sequences of gaits, rests and waits for a button. Each gait lasts for some cycles, for
+//! some time, or until a contact closes.
 
 use lizard_core::console::command::MAX_CYCLES;
 use lizard_core::numbers::gaits::{Gait as Record, MAX_GAITS, Step};
@@ -15,7 +15,7 @@ const MAX_STEPS: usize = 99;
 /// The longest time of a step, s.
 const MAX_SECONDS: f64 = 999.0;
 
-/// The word for a `repeat` without end.
+/// The value of `repeat` for a routine without end.
 const FOR_EVER: &str = "for ever";
 
 /// A routine whose every step has been checked.
@@ -24,22 +24,22 @@ pub struct Routine {
     name: String,
     steps: Vec<Step>,
     rounds: u16,
-    /// The record at which each round but the first begins.
+    /// The index of the record at which each round except the first begins.
     again: u16,
 }
 
 impl Routine {
-    /// Name of the routine; with a blank for each dash also its console command.
+    /// Name of the routine; with its dashes replaced by blanks, it is also the console command.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// The records in the section: a step, or an input and the step that it ends.
+    /// The records in the section: one for each step, after one for the input that ends it, if any.
     pub fn steps(&self) -> &[Step] {
         &self.steps
     }
 
-    /// The number of its steps.
+    /// The number of steps.
     pub fn count(&self) -> usize {
         let is_step = |record: &&Step| record.kind != Step::UNTIL;
         self.steps.iter().filter(is_step).count()
@@ -50,12 +50,13 @@ impl Routine {
         self.count() < self.steps.len()
     }
 
-    /// The number of rounds; `None` without end.
+    /// The number of rounds; `None` if it repeats for ever.
     pub fn rounds(&self) -> Option<u16> {
         (self.rounds > 0).then_some(self.rounds)
     }
 
-    /// The record in the section; `first` of all steps there is its first.
+    /// The routine's record in the section; `first` is the index of its first step record among those of all
+    /// routines.
     pub(crate) fn record(&self, first: usize, name_start: usize) -> Record {
         let mut record = Record {
             name_start: name_start as u16,
@@ -191,8 +192,8 @@ fn no_input(name: &str) -> String {
     format!("names the input \"{name}\", which does not exist; {hint}")
 }
 
-/// Reads a step such as `walk 4`, `stand 1 s`, `rest` or `rest 2.5 s`. One that an input ends needs
-/// neither a number nor a time.
+/// Reads a step such as `walk 4`, `stand 1 s`, `rest` or `rest 2.5 s`. A step that an input ends needs neither a
+/// number nor a time.
 fn parse_step(
     words: &[&str],
     own_name: &str,

@@ -1,13 +1,12 @@
-//! The shape of one leg's sweep over a cycle. Feet are never lifted: a pad drags, and the
-//! robot walks because three feet hold while one returns. So a waveform is a slow stance,
-//! in which the foot goes back, and a fast swing forward; if the swing is long enough, the
-//! two meet without a kink in speed.
+//! The shape of one leg's sweep over a cycle. Feet are never lifted: a pad drags, and the robot walks because three
+//! feet hold while one returns. So a waveform is a slow stance, in which the foot moves back, and a fast swing
+//! forward. If the swing is long enough, the two join without a jump in speed.
 //!
 //! A waveform maps the phase (one cycle = 1) to -1..1, foot forward = 1.
 
 use crate::gaits::path_leg::PathLeg;
 
-/// Shares of the cycle that a held gait gives to each of its five moves.
+/// Share of the cycle of each of the five moves in a held gait.
 const MOVE: f64 = 0.2;
 
 /// A function of the phase with values from -1 to 1.
@@ -21,14 +20,14 @@ pub enum Waveform {
         /// The duty factor: the stance's share of the cycle, 0 to 1.
         duty: f64,
     },
-    /// A smoothstep back in the first fifth, the stance common to all legs, then a
-    /// smoothstep forward, the swing, in fifth number `turn + 1`; it holds otherwise.
+    /// A smoothstep back in the first fifth, the stance common to all legs. Then a smoothstep forward, the swing,
+    /// in fifth number `turn + 1`, counted from 0. Otherwise it holds.
     Held {
         /// Index of this leg's swing among the four, 0 to 3.
         turn: usize,
     },
-    /// A leg whose servo follows a path of the head or tail point. Its value is
-    /// the sweep itself in degrees, so its amplitude is 1.
+    /// A leg whose servo follows a path of the head or tail point. The value is the sweep itself in degrees, so the
+    /// amplitude is 1.
     Path(Box<PathLeg>),
 }
 
@@ -45,10 +44,9 @@ impl Waveform {
     }
 }
 
-/// Stance 1 - 2u/beta, then with t = (u - beta)/(1 - beta) and the end slope
-/// m = -2 (1 - beta)/beta the Hermite cubic from -1 to 1, all divided by the
-/// cubic's peak: to keep its speed, the foot swings a little on before it turns
-/// (by 1.4 % at beta = 0.75), and the amplitude counts that.
+/// Stance 1 - 2u/beta, then with t = (u - beta)/(1 - beta) and the end slope m = -2 (1 - beta)/beta the Hermite
+/// cubic from -1 to 1, all divided by the cubic's peak. To keep its speed, the foot overshoots a little before it
+/// turns (by 1.4 % at beta = 0.75), and the amplitude includes the overshoot.
 fn wave(u: f64, duty: f64) -> f64 {
     let m = -2.0 * (1.0 - duty) / duty;
     let shape = if u < duty {
@@ -62,7 +60,7 @@ fn wave(u: f64, duty: f64) -> f64 {
     shape / -hermite(turning, m)
 }
 
-/// From -1 at t = 0 to 1 at t = 1, with slope m at both.
+/// The Hermite cubic from -1 at t = 0 to 1 at t = 1, with slope m at both ends.
 fn hermite(t: f64, m: f64) -> f64 {
     2.0 * smoothstep(t) - 1.0 + m * t * (1.0 - t) * (1.0 - 2.0 * t)
 }
@@ -72,17 +70,16 @@ fn held(u: f64, turn: usize) -> f64 {
     1.0 - 2.0 * smoothstep(u / MOVE) + 2.0 * smoothstep((u - start) / MOVE)
 }
 
-/// t^2 (3 - 2t), 0 before and 1 after.
+/// t^2 (3 - 2t) for t from 0 to 1; 0 before, 1 after.
 fn smoothstep(t: f64) -> f64 {
     let t = t.clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Reduces a waveform to one that has a table: `at(u) = sign * base.at(u - shift)`. Returns
-/// base, shift and sign.
+/// Reduces a waveform to one that has a table: `at(u) = sign * base.at(u - shift)`. Returns base, shift and sign.
 ///
-/// The held waveforms of the first and the last swing are each other's negative, shifted, and
-/// so are the two in between; two tables are enough for four.
+/// The held waveforms of the first and the last swing are each other's negative, shifted, and so are the two in
+/// between. So two tables are enough for all four.
 pub(crate) fn canonical(waveform: &Waveform) -> (Waveform, f64, f64) {
     match waveform {
         Waveform::Held { turn } if *turn >= 2 => (
@@ -142,7 +139,7 @@ mod tests {
 
     #[test]
     fn a_wave_begins_its_stance_just_short_of_its_peak() {
-        // For duty 3/4 a search finds the turn at t = .0435645, -1.0143010 there.
+        // For duty 3/4 a numerical search finds the turning point at t = .0435645, with the value -1.0143010.
         assert!((Waveform::Wave { duty: 0.75 }.at(0.0) - 1.0 / 1.014_301_03).abs() < 1e-7);
     }
 

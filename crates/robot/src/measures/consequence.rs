@@ -1,4 +1,4 @@
-//! The consequences of a broken condition for the robot, in words that need no key and no figure.
+//! The consequences of a broken condition for the robot, in words without keys and figures.
 
 use lizard_kinematics::{Check, End, Part, Side};
 
@@ -30,7 +30,7 @@ pub(crate) fn consequence(what: Check) -> String {
     format!("the cranks of the {end} would cross")
 }
 
-/// Says what is wrong with a part whose loop does not close.
+/// Says what is wrong with a part of the linkage whose loop does not close.
 pub(crate) fn no_loop(part: Part) -> String {
     match part {
         Part::End(end) => format!("the links of the {end} would not reach each other"),

@@ -9,10 +9,10 @@ use crate::measures::strut;
 
 const TABLE: &str = "drive";
 const KEYS: [&str; 4] = ["kind", "play", "force", "rate"];
-/// The kinds of drive, and the keys that each of them has besides `kind` and `play`.
+/// The kinds of drive, with the keys that each has in addition to `kind` and `play`.
 const KINDS: [(&str, &[&str]); 2] = [(Kind::WORDS[0], &[]), (Kind::WORDS[1], &["force", "rate"])];
 
-/// Reads `[leg.drive]`; if it is left out, the legs are rigid.
+/// Reads `[leg.drive]`. If it is left out, the legs are rigid.
 pub(crate) fn read(
     leg: &Section,
     legs: &[LegPlan; 4],

@@ -1,4 +1,4 @@
-//! The input of the contact model: `[ground]`, `[body]` and `[feet]` in robot.toml.
+//! The parameters of the contact model: `[ground]`, `[body]` and `[feet]` in robot.toml.
 
 use lizard_contact::{Body, DEFAULT_FRICTION, Drive, Feet, Ground, Stance};
 
@@ -19,8 +19,7 @@ pub(crate) fn read(root: &Section, feet: Feet, drive: Drive) -> Checked<Ground> 
     })
 }
 
-/// Reads the mass and its centre. A mass centre that leaves a foot in the air at neutral is
-/// refused.
+/// Reads the mass and the mass centre. Refuses a mass centre with which a foot is in the air at neutral.
 fn read_body(root: &Section, feet: &Feet) -> Checked<Body> {
     if !root.has("body") {
         return Ok(Body::DEFAULT);
@@ -45,7 +44,7 @@ fn read_body(root: &Section, feet: &Feet) -> Checked<Body> {
     }
 }
 
-/// Reads `[feet]`; every key may be left out.
+/// Reads `[feet]`; every key is optional.
 fn read_stance(root: &Section) -> Checked<Stance> {
     let all = Stance::DEFAULT;
     if !root.has("feet") {

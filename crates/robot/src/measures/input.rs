@@ -9,17 +9,17 @@ use crate::measures::supply::Supplies;
 /// The names of the inputs.
 pub const NAMES: [&str; 2] = ["button", "nose"];
 
-/// Arduino numbers of the pins of the inputs that a robot has.
+/// Arduino pin numbers of the inputs that a robot has.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Inputs {
-    /// A push button.
+    /// A push button, if there is one.
     pub button: Option<u8>,
-    /// A switch that closes in front of an obstacle.
+    /// A switch that closes in front of an obstacle, if there is one.
     pub nose: Option<u8>,
 }
 
 impl Inputs {
-    /// Reads `[input]`; every input may be left out.
+    /// Reads `[input]`; every input is optional.
     pub(crate) fn read(root: &Section, servos: &[Servo; 4], supplies: &Supplies) -> Checked<Self> {
         if !root.has("input") {
             return Ok(Self::default());
@@ -55,13 +55,13 @@ impl Inputs {
         })
     }
 
-    /// The inputs that the robot has: name and Arduino number of the pin.
+    /// The inputs that the robot has: name and Arduino pin number.
     pub fn each(&self) -> impl Iterator<Item = (&'static str, u8)> {
         let pins = NAMES.into_iter().zip([self.button, self.nose]);
         pins.filter_map(|(name, pin)| Some((name, pin?)))
     }
 
-    /// The input of this name in the core's form, if the robot has it.
+    /// The input of this name in the core's representation, if the robot has it.
     pub(crate) fn named(&self, name: &str) -> Option<Input> {
         match name {
             "button" => self.button.map(Input::button),

@@ -1,9 +1,9 @@
-//! The robot's measurements in robot.toml, each with its range.
+//! The robot's dimensions and parameters in robot.toml, each with its range.
 //!
-//! A wrong number would break the robot: bars that do not close, a servo that is driven
-//! against its stop, a chassis that falls over. So every number has its range, the bars must
-//! fit the core's integers, and the neutral pose must be safe. [`Measures`] holds the checked
-//! values: linkage, servos, legs, parts, supplies and the ground of the contact model.
+//! A wrong number would break the robot: links whose loop does not close, a servo driven against its stop, a
+//! chassis that falls over. So every number has its range, the lengths must fit the core's integers, and the
+//! neutral pose must be safe. [`Measures`] holds the checked values: linkage, servos, legs, parts, supplies and the
+//! ground of the contact model.
 
 mod coil;
 mod consequence;
@@ -45,7 +45,7 @@ use scale::LONGEST_BAR;
 /// Range of a link's length, mm.
 const LENGTHS: (f64, f64) = (1.0, LONGEST_BAR);
 
-/// The table that replaces `[leg] spring` and `preload`.
+/// The table that replaces the old keys `[leg] spring` and `preload`.
 const SPRING: &str = "[leg.drive] with kind = \"strut\" and the force and rate of its spring";
 
 const LINKS: [&str; 20] = [
@@ -53,7 +53,7 @@ const LINKS: [&str; 20] = [
     "l15", "l16", "l17", "l18", "l19",
 ];
 
-/// Everything in robot.toml except the gaits.
+/// The contents of robot.toml except gaits and routines.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Measures {
     pub lizard: Lizard,
@@ -72,7 +72,7 @@ pub(crate) struct Measures {
 }
 
 impl Measures {
-    /// Reads and checks the measurements and the neutral pose.
+    /// Reads and checks all values and the neutral pose.
     pub fn read(root: &Section) -> Checked<Self> {
         let links = read_links(root)?;
         let (leg, hips, mount) = read_leg(root)?;
@@ -110,8 +110,8 @@ impl Measures {
         self.servos.map(|servo| servo.neutral)
     }
 
-    /// Refuses lengths that the firmware's 16-bit integers cannot resolve: couplers that are
-    /// short compared with the rest of their loop, or a stroke that leaves the slider no length.
+    /// Refuses lengths that the firmware's 16-bit integers cannot resolve: couplers that are short compared with
+    /// the rest of their loop, or a stroke at which the slider has no length.
     fn check_lengths(&self) -> Checked<()> {
         for (end, names) in [
             (End::Head, ["links.l2", "links.l3"]),
@@ -125,7 +125,7 @@ impl Measures {
                 .zip([bars.coupler_left, bars.coupler_right])
             {
                 if value < smallest {
-                    // Rounded up, so that the length in the message is long enough.
+                    // Rounded up, so that the length in the message is sufficient.
                     let smallest = (10.0 * smallest).ceil() / 10.0;
                     let message = format!(
                         "is {value} mm, which is short beside the rest of its loop; the firmware's 16-bit integers ask for at least {smallest:.1} mm, or for shorter cranks and a shorter base"
@@ -183,7 +183,7 @@ fn read_links(root: &Section) -> Checked<Links> {
     Ok(l)
 }
 
-/// Reads the legs: their links, their hips, and their sweep at neutral in deg.
+/// Reads the legs: their links, their hips, and their outward sweep at neutral, deg.
 fn read_leg(root: &Section) -> Checked<(Leg, Hips, f64)> {
     let keys = [
         "ground",
@@ -225,7 +225,7 @@ fn read_leg(root: &Section) -> Checked<(Leg, Hips, f64)> {
     Ok((leg, hips, mount))
 }
 
-/// Refuses two lengths that the mechanism needs equal.
+/// Refuses two lengths that must be equal for the mechanism.
 fn equal(key: &str, value: f64, other: &str, other_value: f64, reason: &str) -> Checked<()> {
     if value == other_value {
         return Ok(());

@@ -1,8 +1,8 @@
 //! The servos' motors and the friction of the joints: `[servo]` and `[joints]` in robot.toml.
 //!
-//! A data sheet gives a servo's torque at a stall and its time for 60 deg without load, at one
-//! voltage. Between both the torque falls in a line, and both grow with the voltage. No data sheet
-//! gives the inertia of the rotor or the error at which the full torque comes: these are assumed.
+//! A data sheet gives a servo's stall torque and its time for 60 deg without load, at one voltage. Between stall
+//! and no load the torque falls linearly with the speed, and both grow with the voltage. No data sheet gives the
+//! inertia of the rotor or the error at which the full torque is applied: these are assumed.
 
 use lizard_contact::{GRAVITY, Joints, Motor};
 use lizard_kinematics::Lizard;
@@ -10,34 +10,34 @@ use lizard_kinematics::Lizard;
 use crate::file::{Checked, Section, hint};
 use crate::measures::servo::{HAND, Servo};
 
-/// N mm for each kg cm.
+/// N mm per kg cm.
 const N_MM: f64 = 10.0 * GRAVITY;
 
 /// A type of servo, in the units of its data sheet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ServoType {
-    /// Name of the type from which robot.toml starts.
+    /// Name of the type on which robot.toml is based.
     pub model: &'static str,
     /// Source of its figures.
     pub source: &'static str,
-    /// Torque at a stall, kg cm.
+    /// Stall torque, kg cm.
     pub stall_kg_cm: f64,
     /// Time for 60 deg without load, s.
     pub s_per_60_deg: f64,
-    /// Supply at which torque and time are given, V.
+    /// Supply voltage at which torque and time are given, V.
     pub at_volts: f64,
-    /// Supply of this robot's servos, V.
+    /// Supply voltage of this robot's servos, V.
     pub volts: f64,
     /// Width of the dead band, us.
     pub dead_band_us: f64,
-    /// Time constant of the rotor without load, ms.
+    /// Time constant with which the rotor reaches its speed without load, ms.
     pub spin_up_ms: f64,
     /// Error beyond the dead band at which the full torque is applied, deg.
     pub full_torque_deg: f64,
 }
 
-/// The default: an SG-90 by Tower Pro's data sheet, but with the longer time that sellers print
-/// (0.12 s instead of 0.1 s).
+/// The default: an SG-90 by Tower Pro's data sheet, except for the longer time that sellers state (0.12 s instead
+/// of 0.1 s).
 const SG90: ServoType = ServoType {
     model: "SG-90",
     source: "Tower Pro's data sheet, the time by sellers; rotor and full torque assumed",
@@ -51,10 +51,10 @@ const SG90: ServoType = ServoType {
 };
 
 impl ServoType {
-    /// The least and the greatest supply of servos, V.
+    /// The lowest and the highest supply voltage of servos, V.
     pub const SUPPLIES: (f64, f64) = (2.0, 9.0);
 
-    /// A servo of the size of an SG-90 with a digital controller: Hitec's HS-5065MG.
+    /// A servo of an SG-90's size with a digital controller: Hitec's HS-5065MG.
     pub(crate) const DIGITAL: Self = Self {
         model: "digital",
         source: "Hitec's list for the HS-5065MG; dead band, rotor and full torque assumed",
@@ -85,7 +85,7 @@ impl ServoType {
         Self::DIGITAL,
     ];
 
-    /// Reads the keys of `[servo]` beside its four tables; all may be left out.
+    /// Reads the keys of `[servo]` other than its four tables; all are optional.
     pub(crate) fn read(root: &Section) -> Checked<Self> {
         let section = root.open("servo")?;
         let base = match section.has("model") {
@@ -107,7 +107,7 @@ impl ServoType {
         })
     }
 
-    /// The motor at a supply in V, with a gain in us per degree.
+    /// The motor at a supply voltage in V, with a gain in us per degree.
     pub fn motor(&self, volts: f64, us_per_degree: f64) -> Motor {
         let motor = Motor {
             stall: self.stall_kg_cm * N_MM,
@@ -120,7 +120,7 @@ impl ServoType {
     }
 }
 
-/// The type that `[servo] model` names, whatever its capitals and dashes.
+/// The servo type that `[servo] model` names; ignores case, dashes and blanks.
 fn read_model(section: &Section) -> Checked<ServoType> {
     let plain = |name: &str| name.to_ascii_lowercase().replace(['-', ' '], "");
     let word = section.text("model")?;
@@ -136,7 +136,7 @@ fn read_model(section: &Section) -> Checked<ServoType> {
     })
 }
 
-/// Reads `[joints]`; every key may be left out.
+/// Reads `[joints]`; every key is optional.
 pub(crate) fn joints(root: &Section, lizard: &Lizard, servos: &[Servo; 4]) -> Checked<Joints> {
     let links = &lizard.links;
     let lengths = [links.l14, links.l19, links.l16, links.l11];
@@ -145,7 +145,7 @@ pub(crate) fn joints(root: &Section, lizard: &Lizard, servos: &[Servo; 4]) -> Ch
         slider: 0.0,
         arms: std::array::from_fn(|i| {
             let (sin, cos) = (servos[i].neutral + HAND[i] * 90.0).to_radians().sin_cos();
-            // Forward is y of the chassis frame, and left is against x.
+            // Forward is y of the chassis frame; left is -x.
             [lengths[i] * sin, -lengths[i] * cos]
         }),
         base: links.l10,
@@ -176,7 +176,7 @@ mod tests {
     fn without_a_table_the_servos_are_sg90_by_their_data_sheet() {
         let motors = robot("").expect("right").motors();
         for motor in motors.each {
-            // 1.8 kg cm; 60 deg in 0.12 s; 10 us of 10 us for each deg.
+            // 1.8 kg cm; 60 deg in 0.12 s; half of a dead band of 10 us, at 10 us per deg.
             assert!((motor.stall - 176.5197).abs() < 1e-9 && motor.rate == 500.0);
             assert_eq!((motor.idle, motor.full, motor.spin_up), (0.5, 3.0, 0.02));
         }
@@ -229,7 +229,7 @@ mod tests {
         for side in lizard_kinematics::Side::ALL {
             let [front, hind] = side.servos();
             let slider = solved.side(side);
-            // The tips are seen from the hind shaft.
+            // The tips are given relative to the hind shaft.
             let tips = [
                 (front, slider.front_tip, 135.0),
                 (hind, slider.rear_tip, 0.0),

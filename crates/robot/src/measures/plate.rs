@@ -1,12 +1,11 @@
-//! The chassis seen from above: the plate, its arms to the legs' pivots, and the
-//! servos' cases in it.
+//! The chassis plate, seen from above: the plate, its arms to the legs' pivots, and the servos' cases in it.
 
 use lizard_kinematics::{End, Vector};
 
 use crate::measures::legs::LegPlan;
 use crate::measures::parts::Parts;
 
-/// Width of the plate next to a servo's case, mm.
+/// Width of the plate beside a servo's case, mm.
 const BESIDE_SERVO: f64 = 5.0;
 /// Length of the plate beyond a servo's flange, mm.
 const BEYOND_FLANGE: f64 = 2.0;
@@ -18,11 +17,11 @@ pub struct Plate {
     pub half: Vector,
     /// Radius of the corners.
     pub corner: f64,
-    /// Ends of each leg's arms: between the pivots, and from each of them to the plate.
+    /// End points of each leg's arms: one between the pivots, and one from each pivot to the plate.
     pub arms: [[[Vector; 2]; 3]; 4],
     /// Half the width of an arm; its ends are round.
     pub arm: f64,
-    /// The middles of the servos' cases.
+    /// The centres of the servos' cases.
     pub cases: [Vector; 4],
     /// Width and length of a case.
     pub case: Vector,
@@ -36,7 +35,7 @@ impl Plate {
 
     pub(crate) fn new(legs: &[LegPlan; 4], parts: &Parts) -> Self {
         let body = &parts.servo;
-        // A case reaches from its shaft towards the middle of the robot.
+        // A case extends from its shaft toward the middle of the robot.
         let cases: [Vector; 4] = std::array::from_fn(|servo| {
             let inward = -End::of_servo(servo).sign();
             legs[servo].shaft + Vector::new(0.0, inward * (body.length / 2.0 - body.shaft))
@@ -74,7 +73,7 @@ mod tests {
     #[test]
     fn the_papers_plate_holds_its_servos() {
         let plate = robot("paper").plate();
-        // 10 mm to a shaft, half a case, 5 mm; the shaft is 6.1 mm from the case's end.
+        // 10 mm to a shaft, half a case, 5 mm. The shaft is 6.1 mm from the case's end.
         let wide = 10.0 + 6.2 + 5.0;
         let long = 67.5 - (11.4 - 6.1) + 16.2 + 2.0;
         assert!((plate.half.x - wide).abs() < 1e-9, "{plate:?}");

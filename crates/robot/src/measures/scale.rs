@@ -1,5 +1,4 @@
-//! The finest step of a mechanism's lengths with which its longest bars still fit into
-//! the core's 16-bit integers.
+//! The finest step of a mechanism's lengths with which its longest bars still fit into the core's 16-bit integers.
 
 use lizard_core::numbers::units::Scale;
 use lizard_core::numbers::{bars, slider};
@@ -8,16 +7,16 @@ use lizard_kinematics::{FiveBar, Slider};
 /// The longest bar that robot.toml may have, mm.
 pub(crate) const LONGEST_BAR: f64 = 1000.0;
 
-// Every mechanism in a robot.toml fits at some scale.
+// Every mechanism that robot.toml may describe fits at some scale.
 const _: () = assert!(3.0 * LONGEST_BAR < bars::MAX_STEPS);
 const _: () = assert!(4.0 * LONGEST_BAR < slider::MAX_ARM_STEPS);
 
-/// The number of steps of a scale in a millimetre.
+/// The number of steps per millimetre at a scale.
 pub(crate) fn steps_per_mm(scale: Scale) -> f64 {
     f64::from(1u32 << scale.bits)
 }
 
-/// Finds the scale of an end's five-bar.
+/// Finds the scale of the five-bar of an end.
 pub(crate) fn of_loop(bars: &FiveBar) -> Scale {
     let all = bars.base + bars.crank_left + bars.crank_right;
     finest(&[
@@ -27,7 +26,7 @@ pub(crate) fn of_loop(bars: &FiveBar) -> Scale {
     ])
 }
 
-/// Finds the scale of a side whose slider may travel `stroke_max` (mm) from nominal.
+/// Finds the scale of a side whose slider may extend by `stroke_max` mm from nominal.
 pub(crate) fn of_side(side: &Slider, stroke_max: f64) -> Scale {
     let arms = side.front + side.rear + side.offset.abs();
     finest(&[
@@ -37,7 +36,7 @@ pub(crate) fn of_side(side: &Slider, stroke_max: f64) -> Scale {
     ])
 }
 
-/// Finds the finest scale in which every length (mm) has fewer steps than its bound.
+/// Finds the finest scale at which every length (mm) has fewer steps than its bound.
 fn finest(lengths: &[(f64, f64)]) -> Scale {
     let is_in_range = |scale: &Scale| {
         let per_mm = steps_per_mm(*scale);
@@ -55,8 +54,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// True if bars fit at this number of bits, by the core's bounds: 127 and 255 times 256
-    /// steps.
+    /// True if the bars fit at this number of bits, by the core's bound of 127 times 256 steps.
     fn loop_fits(bars: &FiveBar, bits: u16) -> bool {
         let steps = |mm: f64| mm * f64::from(1u32 << bits);
         let all = bars.base + bars.crank_left + bars.crank_right;
@@ -102,7 +100,7 @@ mod tests {
 
     #[test]
     fn a_length_that_just_does_not_fit_halves_the_step_less() {
-        // 127 mm together: exactly the bound at 256 steps, which is not below it.
+        // 127 mm in total: exactly the bound at 256 steps per mm, and it must be below the bound.
         let bars = |base| FiveBar {
             base,
             crank_left: 40.0,

@@ -12,27 +12,26 @@ pub const NAMES: [&str; 4] = ["A1", "A2", "A3", "A4"];
 /// The leg that each servo carries: left or right, front (F) or hind (H).
 pub const LEGS: [&str; 4] = ["LF", "RF", "RH", "LH"];
 
-/// The side of a servo's link on which the slider's arm stands: 1 if counter-clockwise from its
-/// crank, else -1.
+/// The side of a servo's link where the slider's arm is: 1 if counter-clockwise from its crank, else -1.
 pub const HAND: [f64; 4] = {
     let (left, right) = (Side::Left.sign(), Side::Right.sign());
     [left, right, -right, -left]
 };
 
-/// Pulse widths that a hobby servo tolerates, us; within a 4 ms slot.
+/// Pulse widths that a hobby servo tolerates, us; they fit into a slot of 4 ms.
 const WIDTHS: (f64, f64) = (500.0, 2500.0);
-/// Gains of a servo, us per degree; the firmware's i16 holds no larger one.
+/// Gains of a servo, us per degree; the firmware's i16 cannot hold a larger one.
 const GAINS: (f64, f64) = (1.0, 22.0);
 
-/// For each servo the one on the other side of the robot.
+/// The servo on the other side of the robot, for each servo.
 pub const OPPOSITE: [usize; 4] = [1, 0, 3, 2];
 
-/// One servo as robot.toml gives it.
+/// One servo, as robot.toml defines it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Servo {
-    /// Arduino number of its pin.
+    /// Arduino number of its signal pin.
     pub pin: u8,
-    /// Chassis-frame angle at which the horn is fitted, deg.
+    /// Angle in the chassis frame at which the horn is fitted, deg.
     pub neutral: f64,
     /// Pulse width at the neutral angle, us.
     pub neutral_us: f64,
@@ -45,27 +44,26 @@ pub struct Servo {
 }
 
 impl Servo {
-    /// The travel as sweeps from neutral in deg: smallest and largest. It is never
-    /// beyond half a turn, even if the pulses allow more.
+    /// The travel as sweeps from neutral, deg: smallest and largest. It is limited to half a turn, even if the
+    /// pulses allow more.
     pub fn travel(&self) -> (f64, f64) {
         let a = (self.min_us - self.neutral_us) / self.us_per_degree;
         let b = (self.max_us - self.neutral_us) / self.us_per_degree;
         (a.min(b).max(-HALF_TURN), a.max(b).min(HALF_TURN))
     }
 
-    /// True if the servo can turn to this chassis-frame angle, deg.
+    /// True if the servo can turn to this angle in the chassis frame, deg.
     pub fn reaches(&self, angle: f64) -> bool {
         let (min, max) = self.travel();
         (min - ROUNDING..=max + ROUNDING).contains(&wrap(angle - self.neutral))
     }
 
-    /// Converts a pulse width (us) to the sweep from neutral, deg, counter-clockwise
-    /// positive.
+    /// Converts a pulse width (us) to the sweep from neutral, deg, positive counter-clockwise.
     pub fn sweep(&self, pulse: f64) -> f64 {
         (pulse - self.neutral_us) / self.us_per_degree
     }
 
-    /// Converts a chassis-frame angle (deg) to the pulse width, us.
+    /// Converts an angle in the chassis frame (deg) to the pulse width, us.
     pub fn pulse(&self, angle: f64) -> f64 {
         self.neutral_us + self.us_per_degree * wrap(angle - self.neutral)
     }
@@ -73,15 +71,15 @@ impl Servo {
 
 /// Rounding error allowed at the end of a travel, deg.
 const ROUNDING: f64 = 1e-9;
-/// The largest sweep that the core holds, deg.
+/// The largest sweep that the core can represent, deg.
 const HALF_TURN: f64 = i16::MAX as f64 / STEPS_PER_DEGREE;
 
 /// Limits of the servos' speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpeedLimits {
-    /// Fastest turn in a point-to-point move, deg/s.
+    /// Highest speed in a point-to-point move, deg/s.
     pub slew: f64,
-    /// Fastest turn in a gait, deg/s.
+    /// Highest speed in a gait, deg/s.
     pub gait_slew: f64,
 }
 
@@ -89,7 +87,7 @@ pub struct SpeedLimits {
 /// (14 to 19).
 pub(crate) fn pin(name: &str) -> Option<u8> {
     let (letter, number) = name.split_at_checked(1)?;
-    // "+5" and "05" parse, but are no names.
+    // "+5" and "05" would parse, but are not names of pins.
     let number: u8 = number
         .parse()
         .ok()
@@ -101,7 +99,7 @@ pub(crate) fn pin(name: &str) -> Option<u8> {
     }
 }
 
-/// Reads the key `pin`, one of [`pin`].
+/// Reads the key `pin`, whose value must be a name that [`pin`] accepts.
 pub(crate) fn free_pin(section: &Section) -> Checked<u8> {
     let text = section.text("pin")?;
     pin(text).ok_or_else(|| {
@@ -112,7 +110,7 @@ pub(crate) fn free_pin(section: &Section) -> Checked<u8> {
     })
 }
 
-/// The keys of `[servo]` that describe the motor of all four.
+/// The keys of `[servo]` that describe the motors of all four servos.
 const MOTOR: [&str; 8] = [
     "model",
     "stall_kg_cm",

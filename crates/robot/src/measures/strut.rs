@@ -1,5 +1,4 @@
-//! The slotted strut of the robot's parts: its length, and the pull of a spring from the shop in
-//! it.
+//! The slotted strut between a servo's link and its leg: its length, and the pull of the spring in it.
 
 use lizard_contact::{SLOT, Strut};
 
@@ -8,14 +7,13 @@ use crate::measures::legs::LegPlan;
 use crate::measures::parts::Parts;
 use crate::measures::servo::HAND;
 
-/// The length, inside its hooks, of a spring that is mounted in a strut, mm: both hooks lie
-/// around the far sides of their screws.
+/// The length, inside its hooks, of a spring mounted in a strut, mm: both hooks go around the far sides of their
+/// screws.
 pub(crate) fn hung(legs: &[LegPlan; 4], parts: &Parts) -> f64 {
     legs[0].strut_length + parts.screw.diameter
 }
 
-/// Makes the strut of a robot with this spring in it; the servos' neutral angles are in deg,
-/// chassis frame.
+/// The strut of a robot with this spring in it. The servos' neutral angles are in deg, chassis frame.
 pub(crate) fn of_coil(legs: &[LegPlan; 4], neutral: [f64; 4], parts: &Parts, coil: &Coil) -> Strut {
     let [radius, angle] = parts.anchor;
     let arm = |leg: usize| neutral[leg] - HAND[leg] * angle - legs[leg].strut.angle();

@@ -1,80 +1,78 @@
-//! The voltage of the board and of the servos: its measurement, and the thresholds at which the
-//! robot slows down, stops and rests.
+//! The supply voltages of the board and of the servos: how they are measured, and the thresholds at which the robot
+//! slows down, stops and rests.
 
 use lizard_core::numbers::supplies::{Supplies as CoreSupplies, Thresholds};
 
 use crate::file::{Checked, Section};
 use crate::measures::servo::{NAMES, Servo, pin};
 
-/// The nominal reference of an ATmega328P, V: data sheet, section 29.8.
+/// The nominal voltage reference of an ATmega328P, V: data sheet, section 29.8.
 const REFERENCE: f64 = 1.1;
 const REFERENCES: (f64, f64) = (1.0, 1.2);
 
-/// Range of the thresholds of the board's supply, V: the brown-out detector resets the chip
-/// at 2.7, and the chip tolerates 5.5.
+/// Range of the thresholds of the board's supply, V: the brown-out detector resets the chip at 2.7, and the chip
+/// tolerates 5.5.
 const BOARD: (f64, f64) = (2.7, 5.5);
 
-/// Default thresholds, V: low, too low to move, too low to hold. With an unmeasured reference a
-/// healthy board may show 4.3 V.
+/// Default thresholds, V: low, too low to move, too low to hold. With an unmeasured reference, a healthy board may
+/// be measured as 4.3 V.
 const DEFAULTS: [f64; 3] = [4.2, 4.0, 3.7];
 
-/// Rating of the fuse, and the least one of the switch, A. The fuse carries what the
-/// converter draws from an empty battery, 3 A at 5 V from 6.4 V with a loss of 15 %: 2.8 A.
-/// It must blow before the switch is overloaded, whose rating counts by half, because it
-/// is one for alternating current, and a direct one is harder to break.
+/// Rating of the fuse, A. It carries what the converter draws from an empty battery for 3 A at 5 V, from 6.4 V with
+/// a loss of 15 %: 2.8 A. It must blow before the switch is overloaded. Half of the switch's rating counts, because
+/// the rating is for alternating current, and direct current is harder to interrupt.
 pub const FUSE: u32 = 3;
-/// See [`FUSE`].
+/// The smallest rating of the switch, A. See [`FUSE`].
 pub const SWITCH: u32 = 6;
 const _: () = assert!(2 * FUSE <= SWITCH);
 
-/// The Arduino numbers of the analogue pins.
+/// The Arduino numbers of the analogue pins A0 to A5.
 const ANALOGUE: std::ops::RangeInclusive<u8> = 14..=19;
 
-/// The chip's reference, and the voltages (V, falling) below which gaits slow down, the robot
-/// stops, and its pulses end.
+/// The chip's voltage reference, and the falling voltages (V) below which gaits slow down, the robot stops, and its
+/// pulses end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Supplies {
-    /// Voltage of the chip's own reference, V.
+    /// Voltage of the chip's internal reference, V.
     pub reference: f64,
     /// Thresholds of the board's supply, V.
     pub board: [f64; 3],
     /// The servos' rail; `None` if it is not measured.
     pub rail: Option<Rail>,
-    /// Percent of their own pace to which gaits are limited below the first threshold. It follows from
-    /// the servos if their rail is measured; the board's supply says nothing about their line.
+    /// Percentage of their own pace to which gaits are limited below the first threshold. It follows from the
+    /// servos if their rail is measured; the board's supply says nothing about the servos' torque-speed line.
     pub slow_pace: u8,
 }
 
-/// A rail that is measured at an analogue pin, through a divider.
+/// A servo rail that is measured at an analogue pin through a divider.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rail {
     /// Arduino number of the pin, 14 to 19.
     pub pin: u8,
-    /// Ratio of the rail's voltage to the pin's.
+    /// Ratio of the rail's voltage to the pin's voltage.
     pub ratio: f64,
     /// Thresholds of the rail, V.
     pub thresholds: [f64; 3],
-    /// True if the first of them is left out, so that it follows from the servos.
+    /// True if the first threshold is left out, so that it follows from the servos.
     pub by_servos: bool,
 }
 
-/// Least distance of a threshold from the one below it, and of the first from the supply: more
-/// than the 0.15 V by which a supply must recover before the robot is fast again.
+/// Smallest distance between the first threshold and the one below it, and between the supply and the first
+/// threshold, V: more than the 0.15 V by which a supply must recover before the robot is fast again.
 const APART: f64 = 0.25;
 
-/// The pace of a low supply whose servos' line is not known, percent.
+/// The pace at a low supply if the servos' line is not known there, percent.
 const DEFAULT_PACE: u8 = 50;
-/// The slowest pace that `speed` takes, percent.
+/// The slowest pace that the command `speed` accepts, percent.
 const SLOWEST_PACE: f64 = 10.0;
 
 impl Rail {
-    /// Lets the robot slow down below the voltage at which the hardest of its gaits would use
-    /// `share` of its servos' line, if robot.toml leaves that to the servos; `line` is what it uses
-    /// at `volts`.
+    /// Sets the first threshold, if robot.toml leaves it to the servos: the voltage below which the hardest gait
+    /// would use more than `share` of the servos' torque-speed line. `line` is the share that it uses at `volts`.
     pub(crate) fn slow_down(&mut self, line: f64, share: f64, volts: f64) {
         let [slow, stop, _] = &mut self.thresholds;
         let min = *stop + APART;
-        // To hundredths. The supply itself must count as good, or nothing would be saved.
+        // Rounded to hundredths. The threshold stays below the supply itself, or the robot would always be slow.
         let slow_volts = (100.0 * volts * line / share).round() / 100.0;
         if self.by_servos {
             *slow = slow_volts.min(volts - APART).max(min);
@@ -83,7 +81,7 @@ impl Rail {
 }
 
 impl Supplies {
-    /// Limits gaits on a low supply to a share of their own pace.
+    /// Limits the pace of gaits at a low supply to a share of their own.
     pub(crate) fn limit_pace(&mut self, pace: f64) {
         self.slow_pace = (100.0 * pace).floor().max(SLOWEST_PACE) as u8;
     }
@@ -101,7 +99,7 @@ impl Default for Supplies {
 }
 
 impl Supplies {
-    /// Reads `[supply]`; every key may be left out.
+    /// Reads `[supply]`; every key is optional.
     pub(crate) fn read(root: &Section, servos: &[Servo; 4]) -> Checked<Self> {
         if !root.has("supply") {
             return Ok(Self::default());
@@ -116,7 +114,7 @@ impl Supplies {
         })
     }
 
-    /// Converts them to the integers of the core.
+    /// Converts the voltages to the integers of the core.
     pub(crate) fn numbers(&self) -> CoreSupplies {
         CoreSupplies {
             reference: millivolts(self.reference),
@@ -136,9 +134,8 @@ const NO_RAIL: Thresholds = Thresholds {
     rest: 0,
 };
 
-/// The voltage of a healthy servos' rail at its divided pin, mV: for simulations, since a rail
-/// of 0 V ends the pulses. The rail has 5 V, or well above its thresholds. `None` if no rail is
-/// measured.
+/// The voltage of a healthy servo rail at its divided pin, mV, for simulations, since a rail of 0 V ends the
+/// pulses. The rail is at 5 V, or well above its thresholds if these are higher. `None` if no rail is measured.
 pub fn healthy_rail_mv(supplies: &CoreSupplies) -> Option<f64> {
     const RESERVE: f64 = 500.0;
     const BOARD: f64 = 5_000.0;
@@ -161,12 +158,12 @@ fn read_rail(supply: &Section, servos: &[Servo; 4]) -> Checked<Option<Rail>> {
         let other = NAMES[servo];
         return Err(refused(format!(", which servo.{other} already has")));
     }
-    // A battery of two lithium cells, 8.4 V, through a divider of two or more.
+    // Up to a battery of two lithium cells, 8.4 V, through a divider of two or more.
     let ratio = section.number("ratio", 1.0, 6.0, "(rail over pin)")?;
     let by_servos = !section.has("slow");
     let mut defaults = DEFAULTS;
     if by_servos && section.has("stop") {
-        // Until the servos are known.
+        // A placeholder until the servos are known.
         defaults[0] = f64::INFINITY;
     }
     Ok(Some(Rail {
@@ -177,7 +174,7 @@ fn read_rail(supply: &Section, servos: &[Servo; 4]) -> Checked<Option<Rail>> {
     }))
 }
 
-/// Reads three voltages, each below the previous one.
+/// Reads three voltages, each less than the previous one.
 fn read_thresholds(
     section: &Section,
     (min, max): (f64, f64),
@@ -272,10 +269,10 @@ mod tests {
                 .map(|gait| of(gait).line_share(1.0, supply));
             used.fold(0.0, f64::max)
         };
-        // A little below stop + 0.25 for this floor: the threshold of the paper's robot.
+        // On this floor the servos would allow slightly less than stop + 0.25 V, so this minimum is the threshold.
         let wanted = (4.8 * largest(1.0) / crate::TIGHT).max(4.25);
         assert!((sg90 - wanted).abs() < 0.01, "{sg90} {wanted}");
-        // More friction needs more; a threshold that is given stays.
+        // More friction requires a higher threshold; a given threshold stays.
         let rough = slow("", "", "0.8");
         let by_line = rough / 4.8;
         assert!(rough > sg90 + 0.1, "{rough}");
@@ -287,14 +284,15 @@ mod tests {
         let used = used.fold(0.0, f64::max);
         assert!((used - crate::TIGHT).abs() < 0.005, "{used}");
         assert_eq!(slow("", "slow = 4.3", "0.8"), 4.3);
-        // A servo that is above its line on its own supply: that supply must stay a good one.
+        // If a servo exceeds its line even at its own supply, the threshold still stays below that supply.
         assert_eq!(slow("model = \"copy\"", "", "1.2"), 4.55);
-        // Two lithium cells, and servos for them.
+        // A battery of two lithium cells, and servos for that voltage.
         let two = slow("at_volts = 8.0", "stop = 6.4\nrest = 6.0", "0.7");
         assert!((6.65..7.75).contains(&two), "{two}");
     }
 
-    /// The pace of the paper's robot on another floor with other thresholds, and by search among its efforts.
+    /// The slow pace of the paper's robot on another floor with other thresholds, and the pace that a search among
+    /// its efforts finds.
     fn paces(servo: &str, rail: &str, friction: f64) -> [u8; 2] {
         let tables = format!(
             "[supply.rail]\npin = \"A3\"\nratio = 2.0\n{rail}\n{BEFORE}\nfriction = {friction}"
@@ -321,11 +319,11 @@ mod tests {
         let [rough, searched] = paces("", "", 0.9);
         assert_eq!(rough, searched);
         assert!((11..even).contains(&rough) && even < 100, "{rough} {even}");
-        // Where the threshold is given, too; a robot that stops sooner may go faster.
+        // This also holds if the threshold is given. A robot that stops at a higher voltage may go faster.
         let [given, searched] = paces("", "slow = 4.7\nstop = 4.5", 0.9);
         assert_eq!(given, searched);
         assert!(given > rough, "{given} {rough}");
-        // No pace is slow enough, or none is too fast.
+        // Either no pace is slow enough, or none is too fast.
         assert_eq!(
             paces("model = \"copy\"", "stop = 3.0\nrest = 2.8", 1.2),
             [10, 10]

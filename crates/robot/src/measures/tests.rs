@@ -1,4 +1,4 @@
-//! The measurements that a robot must have.
+//! Tests of the dimensions that a robot must have.
 
 use crate::testing::with;
 
@@ -8,7 +8,7 @@ fn refused(changes: &[(&str, &str)]) -> String {
 
 #[test]
 fn each_coupler_must_be_long_enough_for_its_own_loop() {
-    // The head's bars and the tail's longer couplers are counted in 1/256 mm.
+    // At these lengths both ends are counted in steps of 1/256 mm.
     for (from, to) in [
         ("l2 = 55.0", "l2 = 15.9"),
         ("l3 = 48.0", "l3 = 15.9"),
@@ -23,7 +23,7 @@ fn each_coupler_must_be_long_enough_for_its_own_loop() {
             "{refused}"
         );
     }
-    // A base twice as long halves the steps, for its own end alone.
+    // A longer base halves the steps per mm, only for its own end.
     let long = refused(&[("l5 = 30.0", "l5 = 90.0"), ("l7 = 55.0", "l7 = 31.0")]);
     assert!(
         long.contains("links.l7 is 31 mm") && long.contains("at least 32.1 mm"),

@@ -1,5 +1,5 @@
-//! Sensitivity analysis: varies each assumption of the prediction over its plausible range and
-//! lists those that change a gait's movement by 10 % or more.
+//! Sensitivity analysis of the prediction: varies each assumption over its plausible range and lists those that
+//! change a gait's movement by 10 % or more.
 
 use std::fmt;
 
@@ -11,13 +11,13 @@ use crate::robot::Robot;
 
 /// Smallest change of a movement that is listed, percent.
 const MIN_CHANGE_PERCENT: f64 = 10.0;
-/// Smallest noticeable movement of a cycle: mm ahead, deg of turn.
+/// Smallest noticeable movement in a cycle: mm ahead, deg of turn.
 const MIN_MOVEMENT: (f64, f64) = (1.0, 0.5);
-/// Movements that differ by less belong to a gait and its mirror image or its reverse: mm,
+/// Tolerance within which two movements count as equal, as those of a gait and its mirror image or reverse do: mm,
 /// deg.
 const MIRROR_TOLERANCE: f64 = 0.02;
 
-/// Where the assumptions are that no input of the model varies.
+/// The note about assumptions that no input of the model varies.
 const BEYOND_THE_MODEL: &str = "\
 The model cannot vary the floor's edges and slopes, a lost pad, servos that drive in bursts, a mass centre farther off, \
 or the mass of the limbs.\n\
@@ -30,7 +30,7 @@ struct Inputs {
     servo: ServoType,
     /// Friction of the pins, N mm, and of a slider, N.
     joints: [f64; 2],
-    /// Angle that a servo turns over the angle that the firmware sends.
+    /// Angle that a servo turns, divided by the angle that the firmware sends.
     scale: f64,
 }
 
@@ -46,7 +46,7 @@ impl Inputs {
         }
     }
 
-    /// The movement of a cycle at a pace, 1 for the gait's own.
+    /// The movement of a cycle at a pace; 1 is the gait's own.
     fn walk(&self, robot: &Robot, gait: &CheckedGait, pace: f64) -> Travel {
         let Motors { each, mut joints } = robot.motors_of(&self.servo, self.servo.volts);
         [joints.drag, joints.slider] = self.joints;
@@ -54,7 +54,7 @@ impl Inputs {
     }
 }
 
-/// An assumption: its words, its unit, its range, and the inputs that it varies.
+/// An assumption: its description, its unit, its range, and the inputs that it varies.
 struct Assumption {
     words: &'static str,
     unit: &'static str,
@@ -64,16 +64,16 @@ struct Assumption {
 
 /// The way in which an assumption varies the inputs.
 enum Variation {
-    /// One input takes each value.
+    /// One input is set to each value.
     Value(fn(&mut Inputs) -> &mut f64),
     /// A change that is off (0) in the prediction and on (1) in the comparison.
     Switch(fn(&mut Inputs)),
-    /// An input that matters only after another change.
+    /// An input that has an effect only after another change.
     ValueAfterChange(fn(&mut Inputs), fn(&mut Inputs) -> &mut f64),
 }
 
 impl Variation {
-    /// The value in the prediction.
+    /// The value that the prediction uses.
     fn value(&self, mut inputs: Inputs) -> f64 {
         match self {
             Self::Value(number) | Self::ValueAfterChange(_, number) => *number(&mut inputs),
@@ -119,7 +119,7 @@ const ALL: [Assumption; 21] = assumptions! {
     "spin-up of a servo's rotor", "ms", 2.0 to 40.0, number(servo.spin_up_ms);
     "error at the full torque", "deg", 1.0 to 6.0, number(servo.full_torque_deg);
     "dead band of a servo", "us", 2.0 to 20.0, number(servo.dead_band_us);
-    // A servo that trial 3 of docs/measure.md accepts: 11 or 9 us for each deg, not 10.
+    // The range of servos that trial 3 of docs/measure.md accepts: 11 or 9 us per deg instead of 10.
     "angle of the servos over the one sent", "", 0.91 to 1.11, number(scale);
     "digital servos", "(0 no, 1 yes)", 0.0 to 1.0, case(|inputs| {
         inputs.servo = ServoType {
@@ -154,7 +154,7 @@ const ALL: [Assumption; 21] = assumptions! {
     });
 };
 
-/// The plausible range of an assumption with these words.
+/// The plausible range of the assumption with this description.
 pub fn plausible(words: &str) -> Option<[f64; 2]> {
     let assumption = ALL.iter().find(|assumption| assumption.words == words);
     assumption.map(|assumption| assumption.range)
@@ -175,12 +175,12 @@ struct Row {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assumptions {
     gaits: Vec<String>,
-    /// From the largest effect to the smallest.
+    /// Rows in the order of their effect, the largest first.
     rows: Vec<Row>,
 }
 
 impl Assumptions {
-    /// Walks a robot's gaits with its servos at both ends of every range; takes some seconds.
+    /// Simulates a robot's gaits, with its servos, at both ends of every range. Takes some seconds.
     pub fn of(robot: &Robot) -> Self {
         let nominal = Inputs::of(robot);
         let gaits = without_mirror_images(robot, |gait| nominal.walk(robot, gait, 1.0));
@@ -214,28 +214,29 @@ impl Assumptions {
     }
 }
 
-/// A movement in a cycle, mm ahead or deg of turn, and the assumption that makes it so.
+/// A movement in a cycle, mm ahead or deg of turn, and the assumption that causes it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extreme {
     /// The movement.
     pub movement: f64,
-    /// The assumption in words; `None` if it is as in robot.toml.
+    /// The description of the assumption; `None` if all are as in robot.toml.
     pub assumption: Option<&'static str>,
 }
 
-/// The least and the most that a gait moves if one assumption at a time takes either end of its plausible range.
+/// The smallest and the largest movement of a gait, if one assumption at a time is set to either end of its
+/// plausible range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MovementRange {
-    /// True for a gait that turns on the spot, whose turn this is; false for the way ahead.
+    /// True if the gait turns on the spot and the movement is its turn; false if it is its distance ahead.
     pub is_turn: bool,
-    /// The smallest movement with its sign.
+    /// The smallest movement, with its sign.
     pub least: Extreme,
-    /// The largest.
+    /// The largest movement.
     pub most: Extreme,
 }
 
 impl MovementRange {
-    /// Walks a gait at a pace, 1 for its own, with its servos at both ends of every range.
+    /// Simulates a gait, with the robot's servos, at both ends of every range; `pace` is 1 for the gait's own.
     pub fn of(robot: &Robot, gait: &CheckedGait, pace: f64) -> Self {
         let nominal = Inputs::of(robot);
         let travel = nominal.walk(robot, gait, pace);
@@ -271,8 +272,7 @@ impl MovementRange {
     }
 }
 
-/// The gaits that move the robot noticeably, each with its movement, without mirror images and
-/// reverses.
+/// The gaits that move the robot noticeably, each with its movement. Mirror images and reverses are left out.
 fn without_mirror_images(
     robot: &Robot,
     simulate: impl Fn(&CheckedGait) -> Travel,
@@ -297,13 +297,13 @@ fn without_mirror_images(
     gaits
 }
 
-/// True for a gait that turns on the spot: by more deg than it goes mm ahead.
+/// True for a gait that turns on the spot: its turn in deg is at least its distance in mm.
 fn is_turn(movement: &Travel) -> bool {
     movement.turn.abs() >= movement.forward.abs()
 }
 
-/// The part of the movement that a gait is for: ahead, or the turn of a gait that turns on
-/// the spot.
+/// The component of the movement that is the gait's purpose: the distance ahead, or the turn of a gait that turns
+/// on the spot.
 fn principal_component(movement: &Travel) -> fn(&Travel) -> f64 {
     match is_turn(movement) {
         true => |movement| movement.turn,
@@ -344,7 +344,7 @@ impl fmt::Display for Assumptions {
             let range = format!("{least} to {most} {}", row.unit);
             write!(f, "{:<width$} {:>8} {range:>19}", row.words, row.nominal)?;
             for [low, high] in &row.changes {
-                // Adding positive zero turns a negative one positive.
+                // Adding +0.0 turns -0.0 into 0.0.
                 let [low, high] = [low, high].map(|change| change.round() + 0.0);
                 write!(f, "{:>13}", format!("{low:+.0} {high:+.0}"))?;
             }

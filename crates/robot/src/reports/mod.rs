@@ -1,7 +1,7 @@
-//! Tables of a robot's gaits for people to read, and the reasons why a pose is refused.
+//! Tables of a robot's gaits for people, and the reasons why a pose is refused.
 //!
-//! An author of a gait asks for three things: its distance from the limits, its movement, and
-//! the effect of another floor, other feet or softer legs. Each is a table.
+//! The author of a gait needs three things: its distance from the limits, its movement, and the effect of another
+//! floor, other feet or softer legs. Each is a table.
 
 mod assumptions;
 mod report;

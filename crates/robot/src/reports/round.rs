@@ -1,7 +1,7 @@
-//! A round of a routine: how long it takes, and how far it leads.
+//! A round of a routine: its duration and its movement.
 //!
-//! Changes from one gait to the next take time and move the robot, too. So the firmware's core
-//! goes through the routine here, frame by frame, and the contact model follows its poses.
+//! Changes from one gait to the next also take time and move the robot. So the firmware's core runs the routine
+//! here, frame by frame, and the contact model follows its poses.
 
 use lizard_contact::{Prediction, Travel, Walker};
 use lizard_core::virtual_board::Running;
@@ -16,28 +16,28 @@ use crate::units::{FRAMES_PER_SECOND, STEPS_PER_DEGREE};
 pub struct Round {
     /// Name of the routine.
     pub name: String,
-    /// The number of its steps.
+    /// The number of steps.
     pub steps: usize,
-    /// The number of rounds; `None` without end.
+    /// The number of rounds; `None` if they never end.
     pub rounds: Option<u16>,
     /// True if a contact may end one of its steps.
     pub has_inputs: bool,
     /// Time of one round from standing, at full speed, s.
     pub seconds: f64,
-    /// Movement in one round by the contact model; a part that depends on a tie is none.
+    /// Movement in one round by the contact model; parts that depend on a tie are `None`.
     pub movement: Prediction,
-    /// The same with the servos as they are.
+    /// The same movement with the robot's real servos instead of ideal ones.
     pub driven: Prediction,
 }
 
 impl Round {
-    /// Goes through a routine once, while no contact closes ([`Robot::without_contacts`]). The time
-    /// that it takes grows with the routine's length.
+    /// Runs a routine once, with no contact closed ([`Robot::without_contacts`]). The computing time grows with the
+    /// routine's length.
     pub fn of(robot: &Robot, routine: &Routine) -> Self {
         let mut sweeps: Vec<[f64; 4]> = vec![[0.0; 4]];
         sweeps.extend(Self::sweeps(robot, routine));
         let seconds = (sweeps.len() - 1) as f64 / FRAMES_PER_SECOND;
-        // Ties are between pads, so rigid legs show them.
+        // Ties are between pads, so rigid legs suffice to detect them.
         let known = robot.ground().rigid().predict(sweeps.iter().copied());
         let driven = known.keep_known(driven(robot, &sweeps));
         let movement = known.keep_known(robot.ground().travel(sweeps));
@@ -52,7 +52,8 @@ impl Round {
         }
     }
 
-    /// The sweeps of the legs in each frame of one round from standing, deg, foot forward positive.
+    /// The sweeps of the legs in each frame of one round that starts from standing, deg, positive if the foot is
+    /// forward.
     pub fn sweeps(robot: &Robot, routine: &Routine) -> impl Iterator<Item = [f64; 4]> {
         let mut running = Running::power_on(*robot.without_contacts().firmware());
         running.run(STANDS);
@@ -71,7 +72,7 @@ impl Round {
     }
 }
 
-/// Follows these sweeps frame by frame with the robot's servos, until they have come to rest.
+/// Simulates these sweeps frame by frame with the robot's servos, until they are at rest.
 fn driven(robot: &Robot, sweeps: &[[f64; 4]]) -> Travel {
     let (motors, start) = (robot.motors(), sweeps[0]);
     let end = sweeps.last().copied().unwrap_or(start);
@@ -82,7 +83,7 @@ fn driven(robot: &Robot, sweeps: &[[f64; 4]]) -> Travel {
     walker.place().travel()
 }
 
-/// Frames in which a servo that lags behind its last pulse comes to rest.
+/// Frames after which a servo that lags behind its last pulse is at rest.
 const SETTLES: usize = 25;
-/// Frames in which a robot whose power comes on has woken and stands.
+/// Frames after power-on until the robot stands.
 const STANDS: u32 = 60;

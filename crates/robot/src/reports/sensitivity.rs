@@ -1,5 +1,4 @@
-//! The effect of pads, mounting, feet and play on the gaits, if the floor or the print differs
-//! from robot.toml.
+//! The effect of pads, mounting, feet and play on the gaits, for a floor or print that differs from robot.toml.
 
 use std::fmt;
 
@@ -8,21 +7,21 @@ use lizard_contact::{Drive, Feet, Ground, Prediction, Stance};
 use crate::reports::report::{UNDECIDED, known, widest};
 use crate::robot::Robot;
 
-/// Excess length of the front left foot in the table of other feet, mm.
+/// Excess length of the front left foot in the table of other foot stiffnesses, mm.
 const EXCESS_MM: f64 = 0.6;
 
-/// A value that is changed: its name, its values, and the ground with one of them.
+/// A parameter that is varied: its name, its values, and the function that returns the ground with one of them.
 type Change = (&'static str, &'static [f64], fn(&Ground, f64) -> Ground);
 
-/// The tables in the order of the report.
+/// The varied parameters in the order of the report.
 const CHANGES: [Change; 5] = [
-    // Even pads, pads that grip when pushed back, and pads that are mounted in reverse.
+    // Equal friction both ways, pads with more grip when pushed backward, and pads mounted in reverse.
     (
         "friction",
         &[0.8, 1.0, 1.1, 1.25, 1.5, 2.0],
         |ground, ratio| Ground { ratio, ..*ground },
     ),
-    // 41.4 deg outward is a leg in line with its servo's horn.
+    // With 41.4 deg outward, a leg is in line with its servo's horn.
     (
         "mount, deg",
         &[0.0, 20.0, 41.4, 49.0, -41.4],
@@ -37,7 +36,7 @@ const CHANGES: [Change; 5] = [
     ("too long, mm", &[0.5, 1.0, 1.5, 2.0], |ground, twist| {
         standing(ground, ground.stance.stiffness, twist)
     }),
-    // The last are leaves of 2 mm.
+    // The last value is that of leaf springs of 2 mm.
     ("feet, N/mm", &[1.0, 2.0, 3.3], |ground, stiffness| {
         standing(ground, stiffness, EXCESS_MM)
     }),
@@ -50,7 +49,7 @@ const CHANGES: [Change; 5] = [
     }),
 ];
 
-/// The ground with feet of this stiffness, the front left one too long by `twist` mm.
+/// The ground with feet of this stiffness, and the front left foot too long by `twist` mm.
 fn standing(ground: &Ground, stiffness: f64, twist: f64) -> Ground {
     Ground {
         stance: Stance {
@@ -62,17 +61,17 @@ fn standing(ground: &Ground, stiffness: f64, twist: f64) -> Ground {
     }
 }
 
-/// Predictions on changed grounds for all gaits that move.
+/// Predictions with changed parameters for all gaits that move.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sensitivity {
-    /// For each gait its name, and for each table the predictions of a cycle.
+    /// For each gait: its name, and for each table the predictions of a cycle.
     rows: Vec<(String, [Vec<Prediction>; CHANGES.len()])>,
     /// Stiffness of the robot's own feet, N/mm.
     leaf: f64,
 }
 
 impl Sensitivity {
-    /// Predicts the gaits of a robot on changed grounds.
+    /// Predicts the gaits of a robot with each changed parameter.
     pub fn of(robot: &Robot) -> Self {
         let ground = robot.ground();
         let moving = robot.gaits().iter().filter(|gait| gait.moves());
@@ -128,7 +127,7 @@ impl fmt::Display for Sensitivity {
     }
 }
 
-/// Formats a prediction; a turn that rounds to zero is left out.
+/// Formats a prediction. A turn that rounds to zero is left out.
 fn cell(movement: &Prediction) -> String {
     let turn = match movement.turn {
         Some(turn) if turn.abs() < 0.05 => String::new(),

@@ -1,4 +1,4 @@
-//! The servos' effort in every gait, at several supplies and paces, and the movement that is left.
+//! The servos' effort in every gait at several supplies and paces, and the resulting movement.
 
 use std::fmt;
 
@@ -9,39 +9,39 @@ use crate::measures::ServoType;
 use crate::reports::report::{UNDECIDED, known, widest};
 use crate::robot::Robot;
 
-/// Paces of the tables about servos, as `speed` has them: percent of a gait's own.
+/// Paces of the servo tables, as the command `speed` takes them: percent of a gait's own.
 pub const PACES: [f64; 2] = [100.0, 50.0];
 
-/// A gait at one supply and pace.
+/// The figures of a gait at one supply and pace.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Cell {
     line: f64,
     movement: Prediction,
 }
 
-/// A gait at every supply.
+/// The figures of a gait at every supply.
 #[derive(Debug, Clone, PartialEq)]
 struct Row {
     name: String,
-    /// For each pace, for each supply.
+    /// The cells for each pace, and within it for each supply.
     cells: [[Cell; 3]; PACES.len()],
-    /// Greatest pace at which no servo is above its line, percent.
+    /// Highest pace at which no servo exceeds its line, percent, for each supply.
     paces: [f64; 3],
 }
 
-/// The gaits that move, at the servos' own supply and at those at which the robot slows down and
+/// The table of the gaits that move, at the servos' own supply and at those at which the robot slows down and
 /// stops.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ServoTable {
     servo: ServoType,
     volts: [f64; 3],
-    /// Percent of their own pace to which a low supply limits gaits.
+    /// Percentage of their own pace to which gaits are limited at a low supply.
     slow_pace: u8,
     rows: Vec<Row>,
 }
 
 impl ServoTable {
-    /// Predicts a robot's gaits at all supplies and paces; takes some seconds.
+    /// Predicts a robot's gaits at all supplies and paces. Takes some seconds.
     pub fn of(robot: &Robot) -> Self {
         let (servo, volts) = (*robot.servo_type(), robot.reported_volts());
         let ground = robot.ground();
@@ -125,7 +125,7 @@ impl fmt::Display for ServoTable {
     }
 }
 
-/// Formats a cell; a turn that rounds to zero is left out.
+/// Formats a cell. A turn that rounds to zero is left out.
 fn cell(Cell { line, movement }: &Cell) -> String {
     let turn = match movement.turn {
         Some(turn) if turn.abs() < 0.05 => String::new(),

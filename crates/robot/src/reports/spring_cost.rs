@@ -1,28 +1,27 @@
-//! The cost of springs and play to a gait: the lag of its legs, and its distance as a share of
-//! that with rigid legs.
+//! The cost of springs and play for a gait: the lag of its legs, and its movement as a share of that with rigid
+//! legs.
 
 use lizard_contact::{Ground, Prediction};
 
 use crate::checks::CheckedGait;
 
-/// A gait on legs that lag, compared with the same gait on rigid ones.
+/// The comparison of a gait on legs that lag with the same gait on rigid legs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpringCost {
-    /// Movement of a cycle, as [`CheckedGait::predict`] has it.
+    /// Movement of a cycle, as [`CheckedGait::predict`] returns it.
     pub movement: Prediction,
     /// Largest lag of a leg behind its servo, deg.
     pub lag: f64,
-    /// Movement of a cycle over that of rigid legs: ahead, or the turn of a gait that turns on
-    /// the spot, or the smaller of both. `None` if rigid legs go nowhere, or their movement depends
-    /// on ties.
+    /// Movement of a cycle divided by that with rigid legs: the share of the distance ahead or of the turn,
+    /// whichever is smaller. `None` if rigid legs hardly move the robot, or if their movement depends on ties.
     pub share: Option<f64>,
 }
 
-/// Smallest movement of a cycle that counts: mm ahead, deg of turn.
+/// Smallest movement of a cycle for which a share is given: mm ahead, deg of turn.
 const MIN_MOVEMENT: (f64, f64) = (1.0, 0.5);
 
 impl SpringCost {
-    /// Compares a gait on this ground with the same gait on rigid legs; `None` if legs do not lag.
+    /// Compares a gait on this ground with the same gait on rigid legs. Returns `None` if the legs do not lag.
     pub fn of(gait: &CheckedGait, ground: &Ground) -> Option<Self> {
         if !ground.drive.lags() {
             return None;

@@ -1,12 +1,11 @@
-//! The reasons why this robot may not take a pose: its limits, and its servos' travel.
+//! The reasons why a robot may not take a pose: its limits, and its servos' travel.
 
 use lizard_kinematics::{Pose, Solution, wrap};
 
 use crate::measures::servo;
 use crate::robot::Robot;
 
-/// Every reason why the robot may not take a solved pose, each as a message;
-/// none if the pose is safe.
+/// All reasons why the robot may not take a solved pose, each as a message; empty if the pose is safe.
 pub fn reasons(robot: &Robot, solution: &Solution) -> Vec<String> {
     let limits = robot.limits().violations(solution);
     limits
@@ -15,7 +14,7 @@ pub fn reasons(robot: &Robot, solution: &Solution) -> Vec<String> {
         .collect()
 }
 
-/// A message for each servo that cannot reach its angle of a pose.
+/// A message for each servo that cannot reach its angle in a pose.
 pub fn out_of_travel(robot: &Robot, pose: &Pose) -> impl Iterator<Item = String> {
     let angles = <[f64; 4]>::from(*pose);
     (0..4).filter_map(move |i| beyond(robot, i, angles[i]))

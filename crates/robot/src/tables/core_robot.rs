@@ -1,10 +1,9 @@
-//! The core's view of a robot, on a host.
+//! The core's view of a robot on a host.
 //!
-//! The core reads a section of flash. On a host that section is in memory, and the core's
-//! motion borrows it for as long as it runs. So the section of a robot that runs on the core
-//! ([`crate::Robot::firmware`]) is kept until the program ends. It has 5 KB at most, and equal
-//! sections are kept once. The section of a robot that is only checked ([`crate::Robot::core`])
-//! is not kept, so a search may try thousands.
+//! The core reads a section of flash. On a host that section is in memory, and the core's motion borrows it for as
+//! long as it runs. So the section of a robot that runs on the core ([`crate::Robot::firmware`]) is kept until the
+//! program ends. It is at most 4 KiB, and equal sections are stored once. The section of a robot that is only
+//! checked ([`crate::Robot::core`]) is not kept, so a search may try thousands of robots.
 
 use std::collections::HashSet;
 use std::sync::{Mutex, PoisonError};
@@ -16,7 +15,7 @@ pub type CoreRobot = lizard_core::numbers::robot::Robot<'static>;
 
 static KEPT: Mutex<Option<HashSet<&'static [u8]>>> = Mutex::new(None);
 
-/// Keeps a section until the program ends and returns it as a region of flash.
+/// Keeps a section until the program ends, and returns it as a region of flash.
 pub fn flash(section: &[u8]) -> Region<'static> {
     let mut sections = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
     let sections = sections.get_or_insert_default();

@@ -1,8 +1,8 @@
 //! The robot as the firmware reads it: integers, tables and maps in a section of flash.
 //!
-//! The chip has no floating point, 32 KB of flash and 20 ms for a frame. So everything that it
-//! reads is computed here once: the robot's numbers in the types of the core, its gaits as waves of
-//! 64 samples, and the cells in which every pose is proved to be safe.
+//! The chip has 32 KB of flash, 20 ms for a frame, and no floating point. So everything that it reads is computed
+//! here once: the robot's numbers in the types of the core, its gaits as waveforms of 64 samples, and the cells in
+//! which every pose is proven to be safe.
 
 mod cells;
 mod core_robot;

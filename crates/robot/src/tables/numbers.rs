@@ -1,7 +1,8 @@
 //! The robot's numbers as integers, in the types of the core.
 //!
-//! Sixteen bits hold any robot's lengths if the step fits the robot's size, so each mechanism
-//! has its own scale. A number that is not an integer is rounded to the safe side: limits of margins up, strokes and travels inwards, the slew limit down.
+//! Sixteen bits can hold any robot's lengths if the step suits the robot's size, so each mechanism has its own
+//! scale. A number that is not an integer is rounded to the safe side: limits of margins up, strokes and travels
+//! inward, the slew limit down.
 
 use lizard_avr::Flash;
 use lizard_core::numbers::calibration::Calibration;
@@ -21,7 +22,7 @@ use crate::measures::{Measures, scale};
 use crate::tables::table::Tables;
 use crate::units::{CYCLES_PER_US, FRAMES_PER_SECOND, ONE_Q14, ONE_Q15, STEPS_PER_DEGREE};
 
-/// Rounding error allowed in a number that robot.toml gives exactly.
+/// Rounding error that may occur in a number that robot.toml gives exactly.
 const SLACK: f64 = 1e-6;
 
 /// Computes the numbers of a robot, without its maps of certified cells.
@@ -77,8 +78,8 @@ pub(crate) fn content(
     }
 }
 
-/// Computes the hash of the servos alone, which ties a saved calibration to them. Gaits, bars
-/// and limits do not change it.
+/// Computes the hash of the servos only, which ties a saved calibration to them. Gaits, bars and limits do not
+/// change it.
 fn servo_hash(pins: &[u8; 4], neutral: &[Angle; 4], calibration: &[Calibration; 4]) -> u32 {
     crc32fast::hash(format!("{pins:?} {neutral:?} {calibration:?}").as_bytes())
 }
@@ -86,7 +87,7 @@ fn servo_hash(pins: &[u8; 4], neutral: &[Angle; 4], calibration: &[Calibration; 
 fn five_bar(bars: &kinematics::FiveBar) -> Loop {
     let scale = scale::of_loop(bars);
     let length = |mm: f64| steps(mm, scale) as i16;
-    // The crank tips part the furthest where both cranks point outwards.
+    // The crank tips are farthest apart if both cranks point outward.
     let [base, left, right] = [bars.base, bars.crank_left, bars.crank_right].map(length);
     let furthest = (base as u32 + left as u32 + right as u32) / 2 + 2;
     let [a, b] = [bars.coupler_left, bars.coupler_right].map(length);
@@ -110,16 +111,16 @@ fn calibration(servo: &Servo) -> Calibration {
     }
 }
 
-/// Computes the farthest turn of each servo in any gait, neutral included. Between two samples a
-/// gait follows the straight line, so no phase goes beyond the samples. A gait that uses all of
-/// a travel, which is rounded inwards, may be rounded to a step beyond it.
+/// Computes the range of each servo's sweep over all gaits, neutral included. Between two samples a gait follows a
+/// straight line, so no phase exceeds the samples. Rounding may put a gait that uses a whole travel a step beyond
+/// it, because the travel is rounded inward; so the range is limited to the travel.
 fn reach(tables: &Tables, travel: &[Calibration; 4]) -> [Reach; 4] {
     let mut reach = [Reach::default(); 4];
     for gait in &tables.gaits {
         for (reach, channel) in reach.iter_mut().zip(&gait.channels) {
             let wave = Flash::from(&tables.waves[usize::from(channel.wave)]);
             for sample in 0..SAMPLES as u16 {
-                // The phase at which the channel reads this very sample.
+                // The phase at which the channel reads exactly this sample.
                 let phase = (sample << 10).wrapping_sub(channel.offset);
                 let sweep = channel.sweep(wave, phase);
                 reach.min = reach.min.min(sweep);
@@ -134,7 +135,7 @@ fn reach(tables: &Tables, travel: &[Calibration; 4]) -> [Reach; 4] {
     reach
 }
 
-/// Converts a side, with its stroke rounded inwards.
+/// Converts a side; its stroke is rounded inward.
 fn side(slider: &kinematics::Slider, limits: &kinematics::Limits) -> Slider {
     let scale = scale::of_side(slider, limits.stroke_max);
     let length = |mm: f64| steps(mm, scale);
@@ -155,7 +156,7 @@ fn steps(mm: f64, scale: Scale) -> i32 {
     (mm * scale::steps_per_mm(scale)).round() as i32
 }
 
-/// Converts a limit of a margin, rounded up.
+/// Converts the limit of a margin; it is rounded up.
 fn sine(margin: f64) -> Sine {
     Sine(ceil(margin * ONE_Q15) as i16)
 }
@@ -176,7 +177,7 @@ mod tests {
     use lizard_core::numbers::part::{End, Side};
     use lizard_core::numbers::section::{Header, Numbers};
 
-    /// 256 steps to a millimetre: the scale of every mechanism of the unequal robot.
+    /// 256 steps per millimetre: the scale of every mechanism of the unequal robot.
     const PER_MM: f64 = 256.0;
 
     #[test]
@@ -220,7 +221,7 @@ mod tests {
             [limits.type2, limits.type1, limits.leg],
             [10_486, 8_848, 12_452].map(Sine)
         );
-        // An exact one stays.
+        // An exact limit stays as it is.
         let exact = with("unequal", &[("type2 = 0.32 ", "type2 = 0.25 ")]).expect("0.25");
         assert_eq!(exact.firmware().limits().type2, Sine(8192));
     }
@@ -260,8 +261,7 @@ mod tests {
 
     #[test]
     fn a_travel_of_whole_steps_keeps_its_last_one() {
-        // Neither 9.2 nor 10.4 us is a fraction of two's powers; the quotient may come
-        // out a little short.
+        // 9.2 and 10.4 us are not exact in binary, so the quotient may be slightly too small.
         for us_per_degree in [7.3, -7.3, 8.5, 9.2, -10.4, 11.1] {
             for k in 1..=13 {
                 let way = f64::abs(us_per_degree) * 5.625 * f64::from(k);
@@ -282,7 +282,8 @@ mod tests {
 
     #[test]
     fn a_loop_is_near_stretched_beyond_three_quarters_of_its_reach() {
-        // Squared; so where base and cranks exceed .866 of both couplers.
+        // Three quarters of the squared reach, so base and cranks together must exceed .866 of both couplers
+        // together.
         for (bars, near) in [
             ([20.0, 30.0, 30.0], false),
             ([26.0, 30.0, 30.0], false),
@@ -315,8 +316,7 @@ mod tests {
                         * (servo.neutral_us
                             + servo.us_per_degree * f64::from(sweep) * 360.0 / 65536.0);
                     let width = calibration.width(Sweep(sweep as i16));
-                    // A half of a cycle each: the neutral, the gain over the travel, the
-                    // product.
+                    // Up to half a cycle of rounding error each: neutral, gain over the travel, product.
                     let error = (f64::from(width.0) - cycles).abs();
                     assert!(error <= 1.5, "{name} A{}: {error} cycles at {sweep}", i + 1);
                 }
@@ -350,7 +350,7 @@ mod tests {
 
     #[test]
     fn the_slew_limit_is_rounded_down() {
-        // 260 deg/s are 946.6 steps in a frame.
+        // 260 deg/s are 946.6 steps per frame.
         assert_eq!(robot("unequal").firmware().slew(), Slew::new(946));
         assert_eq!(robot("paper").firmware().slew(), Slew::new(1092));
     }
@@ -370,7 +370,8 @@ mod tests {
     #[test]
     fn only_unequal_couplers_and_wide_cranks_have_further_tables() {
         for (name, robot) in all() {
-            // Where a curve begins; both ends have the same couplers, and share their curves.
+            // The offset of each curve; 0 if there is none. Both ends have the same couplers and share their
+            // curves.
             let [head, tail] = numbers_of(&robot).curves;
             let [rise, stretched, folded, skew] = head;
             assert_ne!(rise, 0, "{name}");
@@ -378,7 +379,7 @@ mod tests {
                 assert_eq!(curve != 0, name == "unequal", "{name}");
             }
             assert_eq!([rise, folded, skew], [tail[0], tail[2], tail[3]], "{name}");
-            // Its tail alone has cranks that part so far.
+            // Only the tail of the unequal robot has crank tips that can be so far apart.
             assert_eq!(
                 [stretched != 0, tail[1] != 0],
                 [false, name == "unequal"],

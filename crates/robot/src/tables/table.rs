@@ -1,7 +1,7 @@
-//! The gaits as the firmware stores them: waveforms of 64 samples that several servos
-//! share, each servo with an offset and a gain.
+//! The gaits as the firmware stores them: waveforms of 64 samples that several servos share, each servo with its
+//! own offset and gain.
 //!
-//! The meaning of a table, and the interpolation between its samples, belong to the core:
+//! The core defines the meaning of a table and the interpolation between its samples:
 //! [`lizard_core::numbers::gaits`].
 
 use lizard_avr::Flash;
@@ -13,18 +13,17 @@ use crate::gaits::{Gait, Stride, Waveform, canonical};
 use crate::measures::servo::{FORWARD, NAMES};
 use crate::units::{FRAMES_PER_SECOND, ONE_Q14, PHASES, STEPS_PER_DEGREE};
 
-/// Two waveforms that differ by less than this (deg) share a table: a third of
-/// an angle step.
+/// Waveforms that differ by less than this (deg), a third of an angle step, share a table.
 const SAME_DEG: f64 = 0.002;
 
-/// The tables that the firmware reads to walk.
+/// The tables that the firmware reads in order to walk.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Tables {
     /// Waveforms, in angle steps at gain 1.
     pub waves: Vec<Wave>,
     /// Gaits in the order of the file.
     pub gaits: Vec<TableGait>,
-    /// Names of the gaits, one after the other, with blanks between words.
+    /// Names of the gaits, concatenated, with blanks between words.
     pub names: Vec<u8>,
 }
 
@@ -58,7 +57,7 @@ impl Tables {
         }
         let peaks = bank.peak_amplitudes(&parts);
         if bank.samples.is_empty() {
-            // A robot that only stands still reads one table, of zeros.
+            // A robot that only stands still reads a single table, of zeros.
             bank.samples.push([0.0; SAMPLES]);
         }
         let waves = bank
@@ -72,7 +71,7 @@ impl Tables {
             let gain = part.amplitude / peaks.get(part.wave).copied().unwrap_or(1.0);
             Channel {
                 wave: part.wave as u16,
-                // A shift of one whole cycle wraps to 0.
+                // A shift of one full cycle wraps to 0.
                 offset: (part.ahead.rem_euclid(1.0) * PHASES).round() as u32 as u16,
                 gain: (gain * ONE_Q14).round() as i16,
             }
@@ -97,8 +96,8 @@ impl Tables {
 }
 
 impl Tables {
-    /// The sweeps of a gait, by its index, from neutral at a phase of 1/65536 cycle: in angle
-    /// steps, counter-clockwise positive, servo order.
+    /// The sweeps from neutral of the gait number `gait` at a phase in 1/65536 cycle: in angle steps, positive
+    /// counter-clockwise, servo order.
     pub fn sweeps(&self, gait: usize, phase: u16) -> [i16; 4] {
         self.gaits[gait].channels.map(|channel| {
             let wave = Flash::from(&self.waves[usize::from(channel.wave)]);
@@ -107,30 +106,30 @@ impl Tables {
     }
 }
 
-/// The advance of the phase in one frame, 1/2^24 cycle.
+/// The phase increment per frame, in 1/2^24 cycle.
 fn increment(gait: &Gait) -> i32 {
     let step = (f64::from(CYCLE) / (FRAMES_PER_SECOND * gait.period)).round() as i32;
     if gait.reversed { -step } else { step }
 }
 
-/// A stride as a waveform of the bank times an amplitude.
+/// A stride, as a waveform of the bank times an amplitude.
 struct Part {
     wave: usize,
     /// Its lead over the stored waveform, cycles.
     ahead: f64,
-    /// Amplitude, deg, counter-clockwise positive.
+    /// Amplitude, deg, positive counter-clockwise.
     amplitude: f64,
 }
 
-/// The waveforms so far, each scaled to a largest value of 1.
+/// The waveforms found so far, each scaled to a peak of 1.
 #[derive(Default)]
 struct WaveformBank {
     samples: Vec<[f64; SAMPLES]>,
 }
 
 impl WaveformBank {
-    /// Finds or adds the waveform of a stride; `forward` is the sense in which
-    /// the servo moves its foot forward. `None` if the stride sweeps half a turn.
+    /// Finds or adds the waveform of a stride; `forward` is 1 or -1, the direction in which the servo moves its
+    /// foot forward. `None` if the stride sweeps half a turn or more.
     fn find(&mut self, stride: &Stride, forward: f64) -> Option<Part> {
         let (waveform, shift, sign) = canonical(&stride.waveform);
         let samples = samples(&waveform);
@@ -166,8 +165,8 @@ impl WaveformBank {
         }))
     }
 
-    /// Computes the largest amplitude that each waveform needs, deg. Tables are
-    /// stored at that size, so that no gain exceeds 1.
+    /// Computes the largest amplitude with which each waveform is used, deg. Tables are stored at that amplitude,
+    /// so that no gain exceeds 1.
     fn peak_amplitudes(&self, parts: &[Part]) -> Vec<f64> {
         let peak_amplitude = |wave| {
             parts
@@ -179,12 +178,11 @@ impl WaveformBank {
     }
 }
 
-/// Samples a waveform so that the straight lines between the samples have no mean error.
+/// Samples a waveform so that the straight lines between the samples have zero mean error.
 ///
-/// A line between two points of a curve lies on its inner side, so samples on the curve make
-/// every stride too short (the paper's walk by 1 %). Each is moved outward by the mean distance
-/// of line and curve, a twelfth of the second difference, but not beyond the waveform's peak,
-/// because a servo's travel may end there.
+/// A line between two points of a curve lies on its inner side, so samples on the curve would make every stride too
+/// short (the paper's walk by 1 %). Each sample is moved outward by the mean distance between line and curve, a
+/// twelfth of the second difference, but not beyond the waveform's peak, because a servo's travel may end there.
 fn samples(waveform: &Waveform) -> [f64; SAMPLES] {
     let on: [f64; SAMPLES] = std::array::from_fn(|i| waveform.at(i as f64 / SAMPLES as f64));
     let peak = peak(&on);
@@ -200,7 +198,7 @@ fn peak(samples: &[f64; SAMPLES]) -> f64 {
     samples.iter().fold(0.0, larger)
 }
 
-/// Finds the rotation that turns `existing` into `samples` within `tolerance`.
+/// Finds the rotation that makes `existing` equal to `samples` within `tolerance`.
 fn find_rotation(
     existing: &[f64; SAMPLES],
     samples: &[f64; SAMPLES],
@@ -280,7 +278,7 @@ mod tests {
         let walk = robot.gait("walk").expect("walk");
         for phase in 0..=u16::MAX {
             let [a1, a2, a3, a4] = walk.table_sweeps(phase);
-            // LH starts at 0, LF a quarter later, RH half a cycle, RF three quarters.
+            // LH starts at 0, LF a quarter of a cycle later, RH half a cycle, RF three quarters.
             let hind_left = |later: u16| walk.table_sweeps(phase.wrapping_sub(later))[3];
             assert_eq!([a1, a4], [hind_left(0x4000), hind_left(0)]);
             assert_eq!([-a3, -a2], [hind_left(0x8000), hind_left(0xc000)]);
@@ -302,7 +300,7 @@ mod tests {
                 let [a1, a2, a3, a4] = a.table_sweeps(phase);
                 let mirrored = [-a2, -a1, -a4, -a3];
                 let other = b.table_sweeps(phase);
-                // Halves are rounded up on either side of zero.
+                // The core rounds halves up on both sides of zero, so mirrored values may differ by a step.
                 assert!(
                     mirrored.iter().zip(other).all(|(m, o)| m.abs_diff(o) <= 1),
                     "{name} {} at {phase}",
@@ -314,8 +312,7 @@ mod tests {
 
     #[test]
     fn gaits_that_differ_only_in_amplitude_start_and_gain_share_a_waveform() {
-        // Two waves, two held shapes for four turns, one path for two servos that
-        // mirror each other.
+        // Two waves, two held shapes for four turns, and one path for two servos that mirror each other.
         assert_eq!(waves(&robot("paper")), 5);
         let other = with("paper", &[("amplitude = 15.0", "amplitude = 14.0")]).expect("a trot");
         assert_eq!(waves(&other), 5);

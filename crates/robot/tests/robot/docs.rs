@@ -1,4 +1,4 @@
-//! docs/gaits.md shows the output of the commands, docs/twin.md the cost of springs.
+//! Comparison of the tables in docs/gaits.md, docs/limits.md and docs/twin.md with computed ones.
 
 use lizard_robot::{
     Assumptions, Drive, Effort, Ground, Kind, Report, Robot, Sensitivity, ServoTable, TIGHT, Walked,
@@ -15,7 +15,7 @@ fn fenced(text: String) -> String {
     format!("```text\n{text}```\n")
 }
 
-/// Replaces the text between a marker of a page and the next end.
+/// Returns a page with the text between a marker and the next end marker replaced.
 fn filled(page: &str, marker: &str, text: &str) -> String {
     let marker = format!("<!-- {marker} -->\n");
     let start = page.find(&marker).expect(&marker) + marker.len();
@@ -54,7 +54,7 @@ fn the_page_on_limits_lists_the_assumptions_that_matter() {
     check(LIMITS, &page, &now);
 }
 
-/// Asserts that a page is up to date, or writes it.
+/// Asserts that a page is up to date. With the environment variable `BLESS_GAITS`, writes the page instead.
 fn check(path: &str, page: &str, new: &str) {
     let (_, name) = path.split_once("/../../").expect("a page");
     if std::env::var_os("BLESS_GAITS").is_some() {
@@ -66,7 +66,7 @@ fn check(path: &str, page: &str, new: &str) {
     }
 }
 
-/// Pulls of the springs in the table of slotted struts, N; `None` for rigid struts.
+/// Spring forces in the table of slotted struts, N; `None` for rigid struts.
 const PULLS: [Option<f64>; 6] = [Some(0.5), Some(1.0), Some(2.0), Some(3.0), Some(5.0), None];
 
 /// Makes a row of the table of slotted struts, whose springs have the rate of the paper's coil.
@@ -111,8 +111,8 @@ fn the_page_on_the_twin_shows_the_cost_of_springs() {
     );
 }
 
-/// Makes a robot's row of the table of paces: the hardest gait at the supply at which the robot stops, and the
-/// pace at which none is harder than a low supply allows.
+/// Returns a robot's row of the table of paces: its hardest gait at the supply at which the robot stops, and the
+/// highest pace at which every gait leaves the servos enough torque at that supply.
 fn slow_pace(file: &str) -> String {
     let path = format!("{}/../../robots/{file}.toml", env!("CARGO_MANIFEST_DIR"));
     let robot = Robot::load(&path).unwrap_or_else(|error| panic!("{error}"));

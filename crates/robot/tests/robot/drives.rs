@@ -1,4 +1,4 @@
-//! The drive of a leg: struts that yield one way, and play. The figures are those of a separate
+//! The drive of a leg: struts that yield in one direction, and play. The expected figures come from a separate
 //! implementation of the same model.
 
 use lizard_robot::{Body, Drive, Ground, Kind, Report, SpringCost, Walker};
@@ -50,8 +50,8 @@ fn from_two_newton_on_a_strut_walks_as_a_bar() {
                 "{force} N {name} {moved}"
             );
         }
-        // What docs/build.md says to buy does for a robot of 400 g, and the strongest for
-        // pads that hold half as much again.
+        // The spring that docs/build.md recommends suffices for a robot of 400 g, and the strongest one for pads
+        // with 1.5 times the friction.
         for (force, friction) in [(3.0, 0.7), (5.0, 1.05)] {
             let heavy = Ground {
                 friction,
@@ -81,8 +81,8 @@ fn gaits_lose_to_play_what_another_solver_found() {
 
 #[test]
 fn a_leg_leaves_its_servo_only_where_its_strut_grows_longer() {
-    // So weak a spring that the front legs stay back while their servos go ahead, and
-    // the hind legs while theirs go back.
+    // The spring is so weak that the front legs lag while their servos turn forward, and the hind legs while theirs
+    // turn backward.
     let ground = strut(0.5);
     let mut walker = Walker::new(ground, [0.0; 4]);
     for i in 1..=300 {
@@ -138,7 +138,7 @@ fn the_table_of_a_drive_makes_the_ground() {
         .strut()
         .expect("a strut");
     assert_eq!(strut, paper().strut_with(4.0, 0.4));
-    // Left out, both follow from the coil as it hangs between its screws.
+    // Without these keys, both values follow from the coil as it is mounted between its screws.
     let coil = drive("kind = \"strut\"");
     assert_eq!(
         coil.strut(),

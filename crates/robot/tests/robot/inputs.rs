@@ -1,4 +1,4 @@
-//! Inputs of robot.toml, and the steps that they end.
+//! Input pins of robot.toml, and routine steps that end on an input.
 
 use lizard_core::numbers::gaits::{Input, Step};
 use lizard_robot::{Error, Report, Robot, Round, WITHOUT_CONTACTS};
@@ -7,12 +7,12 @@ use super::{paper, paper_text};
 
 const INPUTS: &str = "[input.button]\npin = \"A1\"\n[input.nose]\npin = \"A2\"\n";
 
-/// The paper's robot with more tables.
+/// Reads the paper's robot with additional tables.
 fn with(tables: &str) -> Result<Robot, Error> {
     Robot::parse(&format!("{}\n\n{tables}", paper_text().trim_end()))
 }
 
-/// The message for these tables, with its line counted from their first one.
+/// Returns the error message for these tables, with its line number counted from the first of them.
 fn refusal(tables: &str) -> String {
     let error = with(tables).map(|_| ()).expect_err(tables);
     let before = paper_text().trim_end().lines().count() + 1;
@@ -24,7 +24,7 @@ fn refusal(tables: &str) -> String {
     )
 }
 
-/// Kind, gait and count of the records of a routine with this one step.
+/// Returns kind, gait and count of each record of a routine that has only this step.
 fn records(step: &str) -> Vec<(u8, u8, u16)> {
     let robot = with(&format!("{INPUTS}[routine.one]\nsteps = [\"{step}\"]")).expect(step);
     let [routine] = robot.routines() else {

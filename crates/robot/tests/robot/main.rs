@@ -1,4 +1,4 @@
-//! robot.toml and the gaits, by the crate's public functions; where no robot is named, those of
+//! Integration tests of robot.toml and the gaits through the crate's public functions. Tests that name no robot use
 //! robots/paper.toml.
 
 use std::sync::LazyLock;
@@ -31,13 +31,13 @@ fn gait<'a>(robot: &'a Robot, name: &str) -> &'a CheckedGait {
     robot.gait(name).expect(name)
 }
 
-/// The mass for which another implementation of the contact model gave its figures.
+/// The body for which another implementation of the contact model gave its figures.
 const STUDIED: Body = Body {
     mass: 307.0,
     ..Body::DEFAULT
 };
 
-/// The movement of a cycle: ahead in mm, or in deg for a gait that turns on the spot.
+/// Returns the movement of one cycle: forward in mm, or in deg for a gait that turns on the spot.
 fn cycle_movement(gait: &CheckedGait, ground: &Ground) -> f64 {
     let travel = gait.walked(ground).travel;
     match gait.name() {

@@ -1,13 +1,13 @@
-//! The movement of the paper's gaits against the figures by which they were chosen, and exact
-//! consequences of the contact model.
+//! Predicted movements of the paper's gaits: they match the figures by which the gaits were chosen, and have
+//! properties that follow exactly from the contact model.
 
 use lizard_robot::{Report, Robot, Travel};
 use proptest::prelude::*;
 
 use crate::{gait, paper, paper_with};
 
-/// A cycle of a gait: forward mm, turn deg. From a separate implementation of
-/// the same model, by which the gaits were chosen.
+/// Movement of each gait in one cycle: forward mm, turn deg. The figures come from a separate implementation of the
+/// same model, by which the gaits were chosen.
 const EXPECTED: [(&str, f64, f64); 9] = [
     ("stand", 0.0, 0.0),
     ("walk", 34.16, 0.0),
@@ -20,7 +20,7 @@ const EXPECTED: [(&str, f64, f64); 9] = [
     ("arc-right", 17.71, -5.27),
 ];
 
-/// The prediction for one cycle of a gait, of which nothing depends on a tie.
+/// Returns the predicted movement of one cycle of a gait. Panics if a part of it is undecided.
 fn predict(robot: &Robot, name: &str) -> Travel {
     let movement = robot.predict(gait(robot, name));
     let known =
@@ -65,7 +65,7 @@ fn a_gesture_of_the_head_pulls_two_feet_against_two_and_is_undecided() {
     let report = Report::of(robot).to_string();
     let look = report.lines().find(|line| line.starts_with("look"));
     let cells: Vec<&str> = look.expect("look").split_whitespace().collect();
-    // The way with ideal servos, and that by its servos.
+    // The distance with ideal servos, and with the robot's own servos.
     let [ideal, real] = [6, 2].map(|behind| cells[cells.len() - behind]);
     assert_eq!((ideal, real), ("-", "-"), "{cells:?}");
     assert!(report.contains("\n- undecided: two feet against two"));
@@ -80,7 +80,7 @@ fn a_table_read_backwards_leads_back() {
         (forth.forward + back.forward).abs() < 1e-6,
         "{forth:?} {back:?}"
     );
-    // A whole cycle forth and back again, for a gait that also turns.
+    // One cycle forward and the same cycle in reverse, for a gait that also turns.
     let arc = gait(robot, "arc-left");
     let cycle: Vec<[f64; 4]> = (0..=500).map(|i| arc.sweeps(i as f64 / 500.0)).collect();
     let home = robot
@@ -169,7 +169,6 @@ fn pads_that_grip_backward_help_forward_gaits_until_reverse_collapses() {
 }
 
 proptest! {
-    // A joint path that retraces itself leads nowhere, whatever the path.
     #[test]
     fn a_path_that_retraces_itself_leads_home(
         path in prop::collection::vec(prop::array::uniform4(-20.0f64..20.0), 2..6),

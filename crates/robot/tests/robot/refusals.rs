@@ -1,4 +1,4 @@
-//! Mistakes that an author of robot.toml may make, and the message for each.
+//! Mistakes that an author of robot.toml can make, and the error message for each.
 
 use lizard_robot::Robot;
 
@@ -6,15 +6,15 @@ use crate::{paper_text, paper_with};
 
 /// A mistake in the paper's robot.toml.
 struct Mistake {
-    /// Text of the file.
+    /// The text of the file that is replaced.
     from: String,
-    /// The text in its place.
+    /// The text that replaces it.
     to: String,
     /// The message without the file's name and line.
     message: String,
 }
 
-/// Reads mistakes.txt.
+/// Reads the mistakes from mistakes.txt.
 fn mistakes() -> impl Iterator<Item = Mistake> {
     let blocks = include_str!("mistakes.txt").split("\n\n");
     blocks.filter(|block| block.starts_with('-')).map(|block| {
@@ -40,7 +40,7 @@ fn every_mistake_gets_its_message() {
             .unwrap_or_else(|| panic!("{to:?} was accepted"));
         let place = format!("robot.toml:{}: ", error.line.expect("a line"));
         let whole = error.to_string();
-        // The place comes first, or last after what the mistake means for the robot.
+        // The place is at the start, or at the end if the message begins with the consequence for the robot.
         assert!(whole.contains(&place), "{whole}");
         assert_eq!(whole.replacen(&place, "", 1), message, "for {to:?}");
     }
@@ -72,7 +72,7 @@ fn a_missing_file_is_named() {
     );
 }
 
-/// A file of its own for a test, with these bytes.
+/// Writes a temporary file with these bytes, under a name that no other test process uses.
 fn file(name: &str, bytes: &[u8]) -> std::path::PathBuf {
     let path = std::env::temp_dir().join(format!("{}-{name}.toml", std::process::id()));
     std::fs::write(&path, bytes).expect("a temporary file");
@@ -88,7 +88,7 @@ fn refused(path: &std::path::Path) -> String {
 
 #[test]
 fn a_file_that_is_not_text_is_refused_without_reading_all_of_it() {
-    // Without a bound this would read until memory is full.
+    // Without a limit, reading would continue until memory is full.
     assert_eq!(
         refused("/dev/zero".as_ref()),
         "FILE: is longer than 1 MiB, so it is not a robot file"

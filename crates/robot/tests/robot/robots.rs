@@ -1,4 +1,4 @@
-//! Tests of every robot in robots/, and of the builder's own.
+//! Properties of every robot in robots/ and of robot.toml, the builder's own robot.
 
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
@@ -53,8 +53,7 @@ fn every_gait_is_safe_between_its_samples_too() {
             let pose = gait.table_angles(phase).into();
             let solution = robot.lizard().solve(&pose).expect("it closes");
             if let Some(violation) = robot.limits().violations(&solution).next() {
-                // The check looks at 1024 phases; between two of them a margin
-                // moves by less than this.
+                // The check looks at 1024 phases. Between two of them, a margin changes by less than this.
                 let by = (violation.value - violation.limit).abs();
                 assert!(by < 0.01, "{file} {} at {phase}: {violation}", gait.name());
             }
@@ -82,7 +81,7 @@ fn an_audit_has_the_least_margins_of_all_phases() {
         }
         let found = [audit.type2.value, audit.type1.value, audit.leg.value];
         for (found, sampled) in found.into_iter().zip(least_margins) {
-            // It looks at more phases, so it may find less.
+            // The audit looks at more phases, so its minimum may be smaller.
             assert!(
                 (0.0..0.002).contains(&(sampled - found)),
                 "{file} {}",

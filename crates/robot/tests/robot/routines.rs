@@ -1,16 +1,16 @@
-//! Routines of robot.toml: what they may be, what the section has of them, and how far they lead.
+//! Routines of robot.toml: valid and invalid steps, their records in the section, and the distance they cover.
 
 use lizard_core::numbers::gaits::Step;
 use lizard_robot::{Error, Robot, Round};
 
 use super::{paper, paper_text};
 
-/// The paper's robot with more tables.
+/// Reads the paper's robot with additional tables.
 fn with(tables: &str) -> Result<Robot, Error> {
     Robot::parse(&format!("{}\n\n{tables}", paper_text().trim_end()))
 }
 
-/// The message for a routine `patrol` with these lines.
+/// Returns the error message for a routine `patrol` with these lines.
 fn refusal(lines: &str) -> String {
     let refused = with(&format!("[routine.patrol]\n{lines}"));
     refused.map(|_| ()).expect_err(lines).to_string()
@@ -155,7 +155,7 @@ fn a_mistake_is_reported_with_its_line_and_its_step() {
             "step 1, \"\", names the gait \"\", which does not exist; allowed are stand, walk, trot, crawl, back, left, right, arc-left, arc-right, look",
         ),
     ] {
-        // The routine's table follows the file and a blank line, and its first key that.
+        // After the file come a blank line, the routine's table, and then its first key.
         let line = paper_text().lines().count() + 3;
         let expected = format!("robot.toml:{line}: routine.patrol.steps: {message}");
         assert_eq!(refusal(lines), expected);
@@ -255,7 +255,7 @@ fn a_round_takes_its_cycles_and_changes_and_leads_as_far_as_its_gaits() {
         .predict(robot.gait("left").expect("it is there"))
         .turn
         .expect("known");
-    // A cycle each second, the way there and back.
+    // Ten cycles of one second each, and the changes from and to the neutral pose.
     assert!((10.0..11.0).contains(&ahead.seconds), "{}", ahead.seconds);
     let share = ahead.movement.forward.expect("known") / (10.0 * walk);
     assert!((0.95..1.05).contains(&share), "{share}");

@@ -1,4 +1,4 @@
-//! The load that statics leaves open, and the cost of a foot that is too long.
+//! The distribution of load over four feet that statics leaves open, and the cost of a foot that is too long.
 
 use lizard_robot::{Body, Ground, Stance, Walker};
 
@@ -15,7 +15,7 @@ const GAITS: [&str; 8] = [
     "arc-right",
 ];
 
-/// The paper's ground with feet of this stiffness, the front left one too long.
+/// Returns the paper's ground with feet of this stiffness, the front left one too long by `twist`.
 fn on(stiffness: f64, twist: f64) -> Ground {
     Ground {
         stance: Stance {
@@ -30,8 +30,8 @@ fn on(stiffness: f64, twist: f64) -> Ground {
 
 #[test]
 fn four_tenths_on_a_diagonal_cost_as_much_as_another_solver_found() {
-    // A separate implementation, in which both feet of a diagonal always carry an extra load, and
-    // the others as much less.
+    // The expected figures come from a separate implementation, in which both feet of one diagonal always carry an
+    // extra load, and the other two carry as much less.
     for (name, expected) in [
         ("walk", 24.8),
         ("crawl", 17.4),
@@ -77,7 +77,7 @@ fn on_a_leaf_of_three_newton_a_millimetre_half_a_millimetre_stops_the_robot() {
         cycle_movement(gait, &on(3.3, 0.6)) / cycle_movement(gait, paper().ground())
     };
     assert!(share("walk") < 0.25 && share("crawl") < 0.15 && share("left") < 0.25);
-    // Feet can be set to a fifth of a millimetre, and then it does not matter.
+    // Feet can be adjusted to a fifth of a millimetre; such an error does not matter.
     let gait = gait(paper(), "walk");
     assert!(cycle_movement(gait, &on(3.3, 0.2)) > 33.5);
 }
@@ -95,7 +95,7 @@ fn the_cost_depends_on_stiffness_times_length_over_weight() {
         ..on(2.0, 1.2)
     };
     assert!((cycle_movement(gait, &heavy) - one).abs() < 1e-6);
-    // Feet that all give as much are no matter while they are level.
+    // If all feet are level and equally stiff, their stiffness does not matter.
     assert_eq!(
         cycle_movement(gait, &on(50.0, 0.0)),
         cycle_movement(gait, paper().ground())

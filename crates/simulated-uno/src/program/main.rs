@@ -68,7 +68,7 @@ fn main() -> ExitCode {
     };
     match run(&arguments, image, &mut io::stdout().lock()) {
         Ok(code) => code,
-        // The reader has closed its end, as in `simulated-uno blink.hex | head`.
+        // The reader has closed the pipe, as in `simulated-uno blink.hex | head`.
         Err(error) if error.kind() == ErrorKind::BrokenPipe => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("simulated-uno: cannot print: {error}");

@@ -1,23 +1,23 @@
-//! The results of a run, in words and numbers.
+//! Printed results of a run: serial text, pulses, final state and resources.
 
 use std::io::{self, Write};
 
 use simulated_uno::{CYCLES_PER_MS, CYCLES_PER_US, Edge, Pin, SerialByte, State, Uno, pulses};
 
-/// The longest line that waits for its end; longer ones are cut into pieces.
+/// The longest line that waits for its line end. Longer lines are printed in pieces.
 const MAX_LINE_BYTES: usize = 200;
 
-/// The serial text, line by line.
+/// The UNO's serial text, printed line by line.
 #[derive(Default)]
 pub struct Text {
-    /// The line received so far, without an end.
+    /// The bytes of the line received so far.
     line: Vec<u8>,
     /// The cycle of its last byte.
     cycle: u64,
 }
 
 impl Text {
-    /// Adds bytes, and prints the lines that they complete.
+    /// Adds bytes and prints the lines that they complete.
     pub fn print(&mut self, bytes: &[SerialByte], out: &mut impl Write) -> io::Result<()> {
         for byte in bytes {
             self.cycle = byte.cycle;
@@ -31,7 +31,7 @@ impl Text {
         Ok(())
     }
 
-    /// Prints the last line if it has no end.
+    /// Prints the last line if it has no line end.
     pub fn finish(&mut self, out: &mut impl Write) -> io::Result<()> {
         match self.line.is_empty() {
             true => Ok(()),
@@ -52,7 +52,7 @@ impl Text {
     }
 }
 
-/// Escapes control characters, so that a text cannot command the terminal.
+/// Escapes control characters, so that a text cannot control the terminal.
 pub fn escape(text: &str) -> String {
     let mut escaped = String::new();
     for letter in text.chars() {
@@ -64,7 +64,7 @@ pub fn escape(text: &str) -> String {
     escaped
 }
 
-/// Prints the pulses of all pins that had any: a line for each pin, or for each pulse.
+/// Prints the pulses of all pins that had any: one line for each pin, or for each pulse.
 pub fn print_pins(edges: &[Edge], shows_all: bool, out: &mut impl Write) -> io::Result<()> {
     let us = |cycles: u64| cycles as f64 / CYCLES_PER_US as f64;
     writeln!(out)?;
@@ -107,7 +107,7 @@ pub fn print_pins(edges: &[Edge], shows_all: bool, out: &mut impl Write) -> io::
     Ok(())
 }
 
-/// Prints the state at the end of the run, and the resources used.
+/// Prints the final state and the resources used.
 pub fn end(uno: &Uno, flash: u32, out: &mut impl Write) -> io::Result<()> {
     let state = match uno.state() {
         State::Alive => "It runs on.".to_owned(),
@@ -116,7 +116,7 @@ pub fn end(uno: &Uno, flash: u32, out: &mut impl Write) -> io::Result<()> {
         State::Off => "The power is off.".to_owned(),
     };
     let awake = 100.0 * uno.awake_cycles() as f64 / uno.cycle().max(1) as f64;
-    // Intel HEX does not say where the data end and the stack may begin.
+    // Intel HEX does not say where the static data end and the room for the stack begins.
     let memory = match uno.image().symbols() {
         [] => String::new(),
         _ => format!(

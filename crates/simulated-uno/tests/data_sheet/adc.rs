@@ -8,7 +8,8 @@ use super::{causes, distances, mark_cycles, marks, uno};
 /// ADC clock of 125 kHz: prescaler 128.
 const CLOCK: u64 = 128;
 
-/// `convert()` runs one conversion and `show()` marks its result, low byte first.
+/// Compiles a program with two macros: `convert()` runs a conversion and shows it, and `show()` marks the result, low
+/// byte first.
 fn program(body: &str) -> Image {
     c(&format!(
         "#include <avr/io.h>
@@ -22,12 +23,13 @@ fn program(body: &str) -> Image {
     ))
 }
 
-/// A UNO with this program.
+/// Returns a UNO with this program.
 pub fn with(body: &str) -> Uno {
     uno(program(body))
 }
 
-/// A UNO whose main runs these statements once, with voltages at A0 and the pins after it, mV.
+/// Returns a UNO whose main program runs these statements once, with these voltages at A0 and the pins after it,
+/// mV.
 fn run_once(body: &str, volts: &[u16]) -> Uno {
     let mut uno = with(&format!("int main(void) {{ {body} for (;;) {{}} }}"));
     for (n, mv) in (0..).zip(volts) {
@@ -36,7 +38,7 @@ fn run_once(body: &str, volts: &[u16]) -> Uno {
     uno
 }
 
-/// The conversions' results shown so far.
+/// Returns the conversion results that the program has shown so far.
 fn results(uno: &Uno) -> Vec<u16> {
     let bytes = marks(uno);
     let pairs = bytes.chunks(2);
@@ -45,21 +47,21 @@ fn results(uno: &Uno) -> Vec<u16> {
         .collect()
 }
 
-/// The results of statements that main runs once.
+/// Returns the conversion results of statements that the main program runs once.
 fn results_of(body: &str, volts: &[u16]) -> Vec<u16> {
     let mut uno = run_once(body, volts);
     uno.run_ms(3);
     results(&uno)
 }
 
-/// Measures the bandgap against AVcc, settled, again and again.
+/// Program that measures the settled bandgap against AVcc repeatedly.
 const BANDGAP: &str = "int main(void) {
     ADMUX = 0x4e; ADCSRA = 0x87; _delay_ms(1);
     for (;;) convert(); }";
 
 #[test]
 fn the_bandgap_against_avcc_tells_the_supply() {
-    // "ADC = VIN * 1024 / VREF" (24.7), whole part.
+    // "ADC = VIN * 1024 / VREF" (24.7), rounded down.
     for (supply, bandgap) in [
         (5000.0, 1100.0),
         (3300.0, 1100.0),
@@ -213,8 +215,8 @@ fn the_prescaler_divides_by_table_24_5() {
         uno.run_ms(2);
         let cycles = mark_cycles(&uno);
         let (first, last, count) = (cycles[1], cycles[cycles.len() - 1], cycles.len() as u64 - 2);
-        // Free running: "a new conversion will be started immediately". The loop cannot follow
-        // the fastest.
+        // Free running: "a new conversion will be started immediately". The loop is too slow for the smallest
+        // divisors.
         let is_right = match divisor {
             8.. => (last - first).abs_diff(count * 13 * divisor) < 40,
             _ => count > 500,
@@ -252,8 +254,8 @@ fn the_adc_interrupt_wakes_the_cpu_and_clears_its_flag() {
 
 #[test]
 fn a_voltage_is_sampled_when_table_24_1_says() {
-    // "Sample & Hold (Cycles from Start of Conversion)": 1.5, in the first conversion 13.5. The
-    // start is the next edge, at most a clock after ADSC.
+    // "Sample & Hold (Cycles from Start of Conversion)": 1.5, in the first conversion 13.5. The start is the next
+    // clock edge, at most one clock after ADSC is set.
     for (body, sampled, too_late) in [
         (
             "start(); wait(); GPIOR0 = 0; start(); wait(); show();",
@@ -277,9 +279,8 @@ fn a_voltage_is_sampled_when_table_24_1_says() {
 
 #[test]
 fn conversions_keep_step_with_the_adc_clock() {
-    // "the conversion starts at the following rising edge of the ADC clock cycle"
-    // (24.4): whenever it is requested, its end is an integer number of clocks away
-    // from that of another.
+    // "the conversion starts at the following rising edge of the ADC clock cycle" (24.4): the ends of any two
+    // conversions are a whole number of clocks apart.
     let mut uno = run_once(
         "ADMUX = 0x40; start();
         for (unsigned char i = 0; i < 20; i++) {

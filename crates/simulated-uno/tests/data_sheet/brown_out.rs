@@ -37,7 +37,7 @@ fn a_supply_below_the_brown_out_level_holds_the_chip_in_reset() {
 
 #[test]
 fn a_ramp_resets_at_the_cycle_at_which_it_crosses_the_level() {
-    // 5000 to 2000 and back, 1 mV in 1000 cycles.
+    // 5000 mV to 2000 mV and back, at 1 mV in 1000 cycles.
     let mut uno = with("int main(void) { for (;;) {} }");
     uno.run_cycles(1000);
     uno.ramp_supply_mv(2000.0, 3_000_000);
@@ -133,7 +133,7 @@ fn the_watchdog_stands_still_while_the_supply_holds_the_chip() {
     uno.run_ms(10);
     assert_eq!(marks(&uno), [1, 8, 4, 8]);
 
-    // Nor when WDRF, left set, switches it on at each reset.
+    // The same if WDRF is still set and switches the watchdog on at each reset.
     let mut uno = with(
         "#include <avr/wdt.h>
         int main(void) { if (!(MCUSR & 8)) wdt_enable(WDTO_15MS); for (;;) {} }",

@@ -1,11 +1,11 @@
-//! Contacts between pins and ground (14.2.1 and 14.2.4).
+//! Contacts between pins and ground (data sheet, 14.2.1 and 14.2.4).
 
 use simulated_uno::{Pin, Uno, avr_gcc};
 
 use super::{BOTH, marks};
 
-/// Pull-ups at D4, D8 and A1, switched on by writes to PIN as 14.2.2 has it; then the three pins' levels
-/// as bits 0, 1 and 2, again and again.
+/// Program that enables the pull-ups of D4, D8 and A1 by writes to PIN, see 14.2.2. Then it shows the three pins'
+/// levels repeatedly, as bits 0, 1 and 2.
 const PROGRAM: &str = "
 #include <avr/io.h>
 int main(void) {

@@ -1,13 +1,13 @@
-//! Tests of disturbances of the simulated UNO: interrupts of no source on the chip, a main program
-//! that stands still, registers written from outside.
+//! Tests of disturbances of the simulated UNO: interrupts without a source on the chip, a main program that makes
+//! no progress, registers written from outside.
 
 use simulated_uno::Uno;
 use simulated_uno::avr_gcc::{assembler, c};
 
 use super::{BOTH, LED, both_after, distances, mark_cycles, marks, uno, widths};
 
-/// The LED is up for 100 cycles of instructions without interrupts, and down for
-/// 99 or so with them.
+/// Program in which the LED is on for 100 cycles with interrupts disabled, and off for about 99 with interrupts
+/// enabled.
 const PULSES: &str = "
         ldi r16, 0x08 $ out SPH, r16
         ldi r16, 0xff $ out SPL, r16
@@ -24,7 +24,7 @@ const PULSES: &str = "
     low: dec r20 $ brne low
         rjmp loop";
 
-/// Timer1 counts to 9999; its interrupt adds one to GPIOR0 and main toggles D13.
+/// Program in which Timer1 counts to 9999, its interrupt adds one to GPIOR0, and main toggles D13.
 const COUNT: &str = "#include <avr/io.h>
     #include <avr/interrupt.h>
     ISR(TIMER1_COMPA_vect) { GPIOR0++; }
@@ -67,7 +67,7 @@ fn a_foreign_interrupt_ends_a_sleep_and_is_served_before_the_chips_own() {
         uno.hold(3_000);
         uno.run_until_cycle(35_000);
         let marks = marks(&uno);
-        // The first came some 2000 cycles late, the others at once.
+        // The first interrupt is about 2000 cycles late, the others are on time.
         assert!((120..135).contains(&marks[0]), "{marks:?}");
         assert!(marks[1..].iter().all(|mark| *mark < 4), "{marks:?}");
         assert_eq!(marks.len(), 3);
@@ -87,7 +87,7 @@ fn bytes_that_arrive_while_nothing_is_executed_are_lost_as_on_the_chip() {
     let mut uno = uno(image);
     uno.run_until_cycle(1000);
     uno.send(b"abcdefgh");
-    // Three are in; a hold of five more bytes leaves room for two and the last.
+    // Three bytes have arrived. During the next five, the chip keeps two in its buffer and the last one.
     uno.run_until_cycle(1000 + 3 * 1389 + 100);
     uno.hold(5 * 1389);
     uno.run_until_cycle(30_000);

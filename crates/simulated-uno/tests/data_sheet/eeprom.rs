@@ -10,13 +10,13 @@ pub const ATOMIC: u64 = 3400 * CYCLES_PER_US;
 /// Table 8-1: "Erase Only" and "Write Only", 1.8 ms.
 const SINGLE: u64 = 1800 * CYCLES_PER_US;
 
-/// A UNO that has run these instructions, then an endless loop, for a number of cycles.
+/// Returns a UNO that has run these instructions, then an endless loop, for a number of cycles in all.
 fn run(source: &str, cycles: u64) -> Uno {
     after(cycles, assembler(&format!("{source}\nend: rjmp end")))
 }
 
-/// `body` with `set(address, byte, mode)` and `get(address)` as the data sheet's
-/// examples have them, and `busy()`.
+/// Compiles `body` with `set(address, byte, mode)` and `get(address)`, as in the data sheet's examples, and
+/// `busy()`.
 pub fn program(body: &str) -> Image {
     c(&format!(
         "#include <avr/io.h>
@@ -36,7 +36,7 @@ pub fn program(body: &str) -> Image {
     ))
 }
 
-/// A UNO after a number of milliseconds, whose main runs these statements once.
+/// Returns a UNO after a number of milliseconds, whose main program runs these statements once.
 fn run_once(body: &str, ms: u64) -> Uno {
     after_ms(
         ms,
@@ -62,7 +62,7 @@ fn a_new_eeprom_is_erased_and_holds_1024_bytes_that_tests_may_set() {
 fn registers_read_as_the_data_sheet_says() {
     for (message, body, expected) in [
         (
-            // "EEAR9:0": the others always read as zero (8.6.1).
+            // "EEAR9:0": the other bits always read as zero (8.6.1).
             "an address has ten bits",
             "EEAR = 0xffff; GPIOR0 = EEARH; GPIOR0 = EEARL;",
             &[0x03, 0xff][..],
@@ -97,8 +97,7 @@ fn registers_read_as_the_data_sheet_says() {
     }
 }
 
-/// `sbi EEMPE`, `count` nops, `sbi EEPE`: `count + 2` cycles from one bit to the
-/// other.
+/// Runs `sbi EEMPE`, `count` nops, `sbi EEPE`: there are `count + 2` cycles from one bit to the other.
 fn armed_then(count: usize) -> Uno {
     let nops = "nop\n".repeat(count);
     let source = format!(
@@ -125,9 +124,8 @@ fn eepe_must_be_set_within_four_cycles_after_eempe() {
 
 #[test]
 fn hardware_clears_eempe_after_four_cycles() {
-    // "When EEMPE has been written to one by software, hardware clears the bit to
-    // zero after four clock cycles" (8.6.3). The bit is there from the end of the
-    // sbi on; the n-th `in` after it reads in the n-th cycle.
+    // "When EEMPE has been written to one by software, hardware clears the bit to zero after four clock cycles"
+    // (8.6.3). The bit is set from the end of the sbi on; the n-th `in` after it reads in the n-th cycle.
     let uno = run(
         "sbi EECR, EEMPE
          in r16, EECR $ in r17, EECR $ in r18, EECR $ in r19, EECR $ in r20, EECR
@@ -225,7 +223,7 @@ fn the_cpu_halts_four_cycles_to_read_and_two_to_write() {
 
 #[test]
 fn a_timer_is_on_time_though_the_eeprom_halts_the_cpu() {
-    // Timer1 counts while the CPU stands still, so its interrupt is not late.
+    // Timer1 counts while the CPU is halted, so its interrupt is not late.
     let image = program(
         "ISR(TIMER1_COMPA_vect) { GPIOR0 = TCNT1L; }
         int main(void) {
@@ -242,7 +240,7 @@ fn a_timer_is_on_time_though_the_eeprom_halts_the_cpu() {
 #[test]
 fn the_ready_interrupt_is_a_level_while_eepe_is_zero() {
     // "The EEPROM Ready interrupt generates a constant interrupt when EEPE is
-    // cleared" (8.6.3). The handler writes three bytes, then stops itself.
+    // cleared" (8.6.3). The handler writes three bytes, then disables its interrupt.
     let image = program(
         "static unsigned char count;
         ISR(EE_READY_vect) {
@@ -315,7 +313,7 @@ fn a_reset_lets_a_running_write_finish_and_keeps_its_mode() {
 
 #[test]
 fn a_reset_disarms_eempe() {
-    // Up to the sbi to EEMPE, and that.
+    // Runs up to and including the sbi to EEMPE.
     let mut uno = run("in r16, GPIOR1 $ sbi EECR, EEPE $ sbi EECR, EEMPE", 5);
     uno.reset();
     uno.run_cycles(100);

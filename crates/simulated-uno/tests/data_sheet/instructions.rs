@@ -8,7 +8,7 @@ use super::{BOTH, LED, after, both_after, edges, uno, widths};
 
 #[test]
 fn a_pulse_of_counted_instructions_has_its_counted_width() {
-    // Up at the end of `out`; then 3 nops and the second `out`: 4 cycles.
+    // High at the end of the first `out`; then 3 nops and the second `out`: 4 cycles.
     let image = assembler(
         "sbi DDRB, 5
          ldi r16, 0x20
@@ -21,15 +21,14 @@ fn a_pulse_of_counted_instructions_has_its_counted_width() {
     for uno in both_after(100, &image) {
         let pulses = uno.pulses(LED);
         assert_eq!(pulses.len(), 1);
-        // sbi 2, ldi 1, ldi 1, out 1: up after 5 cycles.
+        // sbi 2, ldi 1, ldi 1, out 1: high after 5 cycles.
         assert_eq!((pulses[0].start, pulses[0].width), (5, 4));
     }
 }
 
 #[test]
 fn unlike_stores_are_stamped_alike() {
-    // out (1 cycle) up, 2 nops, cbi (2 cycles) down: 4 cycles; then sts (2) up,
-    // 1 nop, out down: 2 cycles.
+    // out (1 cycle) high, 2 nops, cbi (2 cycles) low: 4 cycles; then sts (2) high, 1 nop, out low: 2 cycles.
     let image = assembler(
         "sbi DDRB, 5
          ldi r16, 0x20
@@ -73,7 +72,7 @@ fn pins_are_named_as_on_the_board_and_counted_when_high_together() {
 
 #[test]
 fn every_pin_of_every_port_is_recorded_under_its_arduino_number() {
-    // Port by port, each bit up and down: sbi and cbi take 2 cycles each.
+    // Port by port, each bit high and low: sbi and cbi take 2 cycles each.
     let mut source =
         String::from("ldi r16, 0xff $ out DDRD, r16 $ out DDRB, r16 $ out DDRC, r16\n");
     let ports = [("PORTD", 2..8, 0), ("PORTB", 0..6, 8), ("PORTC", 0..6, 14)];
@@ -172,7 +171,7 @@ fn a_starved_watchdog_resets_and_is_counted() {
 
 #[test]
 fn the_noise_in_the_sram_shows_the_depth_of_the_stack() {
-    // Two pushes beyond the return address of one call.
+    // A call pushes its return address of two bytes; the function pushes two more.
     let image = assembler(
         "ldi r16, 0x08 $ out SPH, r16
          ldi r16, 0xff $ out SPL, r16
@@ -198,7 +197,7 @@ fn sizes_come_from_the_elf() {
     assert_eq!(image.symbol("given").map(|symbol| symbol.size), Some(20));
 }
 
-/// The calls of the function `work` within a number of cycles.
+/// Returns the calls of the function `work` within a number of cycles.
 fn calls_of_work(image: Image, cycles: u64) -> Vec<Call> {
     let entry = image.symbol("work").expect("it is global").address as u32;
     uno(image).time_calls(entry, cycles)
@@ -206,7 +205,6 @@ fn calls_of_work(image: Image, cycles: u64) -> Vec<Call> {
 
 #[test]
 fn a_call_is_timed_with_and_without_the_interrupts_in_it() {
-    // work: 1000 times (dec 1, nop 1, brne 2) less 1 for the last, ldi..., ret 4.
     let image = assembler(
         "jmp start
          .org 0x68
@@ -238,7 +236,7 @@ fn a_function_that_calls_itself_is_timed_to_its_own_return() {
         int main(void) { work(9); for (;;) {} }");
     let entry = image.function("work").expect("it is a function").address as u32;
     let mut uno = uno(image);
-    // Watched from inside the first call on: all that follow come from one place.
+    // Timing starts inside the first call; the nested calls all come from the same place.
     assert!(uno.run_until(1000, 1, |uno| !uno.marks().is_empty()));
     let calls = uno.time_calls(entry, 20_000);
     assert_eq!(calls.len(), 1);

@@ -5,8 +5,7 @@ use simulated_uno::{Fidelity, Uno};
 
 use super::{BOTH, FIXED, LED, after, both_after, mark_cycles, marks};
 
-/// Timer1 in CTC mode with a compare interrupt; the handler toggles the LED by
-/// its first instruction.
+/// Program with Timer1 in CTC mode and a compare interrupt, whose handler toggles the LED by its first instruction.
 const TICK: &str = "
     .org 0
         jmp start
@@ -36,9 +35,8 @@ const TICK: &str = "
 
 #[test]
 fn a_compare_interrupt_from_sleep_costs_what_the_data_sheet_says() {
-    // The counter starts with the last cycle of the `sts` to TCCR1B, which the
-    // model puts at its first; it matches 10 000 cycles later. Then 4 + 4 cycles
-    // to enter, 3 for the vector's jmp, 1 for out.
+    // The counter starts with the last cycle of the `sts` to TCCR1B; the model starts it with the first. It matches
+    // 10 000 cycles later. Then 4 + 4 cycles to enter, 3 for the vector's jmp, 1 for out.
     let mut uno = after(100_000, assembler(TICK));
     let starts: Vec<u64> = uno.pulses(LED).iter().map(|pulse| pulse.start).collect();
     assert!(starts.len() >= 9);
@@ -60,7 +58,7 @@ fn stock_simavr_enters_an_interrupt_in_no_time() {
     let mut uno = Uno::with_image(assembler(TICK), Fidelity::Stock);
     uno.run_cycles(100_000);
     let first = uno.pulses(LED)[0].start;
-    // No entry; a cycle late from sleep; jmp 3, out 1.
+    // Entry takes no time; waking from sleep takes a cycle; jmp 3, out 1.
     assert_eq!(first, 23 + 10_000 + 1 + 4);
 }
 
@@ -98,8 +96,8 @@ fn one_instruction_runs_after_sei_before_an_interrupt_that_waits() {
             "nop\n".repeat(count)
         )
     };
-    // The handler makes the pin an input. One instruction after `sei` is done
-    // before it, so the LED has gone up only if it is the first.
+    // The handler makes the pin an input. Only one instruction after `sei` runs before the handler, so the LED goes
+    // on only if `sbi PORTB, 5` is that instruction.
     for (nops, up) in [(0, true), (1, false)] {
         let mut uno = Uno::with_image(assembler(&source(nops)), Fidelity::DataSheet);
         uno.run_until(200_000, 1, |uno| !uno.interrupts().is_empty());
@@ -172,8 +170,8 @@ fn an_interrupt_enabled_while_its_flag_is_up_comes_after_that_instruction() {
 
 #[test]
 fn the_high_byte_of_a_16_bit_register_goes_through_the_shared_temp_byte() {
-    // High byte of OCR1A, then a full write of OCR1B, then the low byte of
-    // OCR1A: silicon stores OCR1B's high byte in both.
+    // The high byte of OCR1A, then both bytes of OCR1B, then the low byte of OCR1A: the real chip stores OCR1B's
+    // high byte in both.
     let image = c("#include <avr/io.h>
         int main(void) {
             OCR1AH = 0x12;

@@ -1,5 +1,5 @@
-//! Tests of the simulated UNO against the data sheet, part by part, by programs whose result
-//! follows by counting cycles.
+//! Tests of the simulated UNO against the data sheet, part by part, with programs whose expected results follow by
+//! counting cycles.
 
 mod adc;
 mod brown_out;
@@ -20,7 +20,7 @@ use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, Pin, ResetCause, Uno};
 const LED: Pin = Pin::d(13);
 const BOTH: [Fidelity; 2] = [Fidelity::Stock, Fidelity::DataSheet];
 
-/// A UNO of each fidelity with this program, after a number of cycles.
+/// Returns a UNO of each fidelity with this program, after a number of cycles.
 fn both_after(cycles: u64, image: &Image) -> [Uno; 2] {
     BOTH.map(|fidelity| {
         let mut uno = Uno::with_image(image.clone(), fidelity);
@@ -29,22 +29,22 @@ fn both_after(cycles: u64, image: &Image) -> [Uno; 2] {
     })
 }
 
-/// The message of a test that fails once simavr no longer needs a correction.
+/// Failure message for a correction that simavr no longer needs.
 const FIXED: &str = "stock simavr now follows the data sheet here: drop the correction";
 
-/// A UNO with this program, corrected by the data sheet, at power-on.
+/// Returns a UNO with this program, corrected by the data sheet, at power-on.
 fn uno(image: Image) -> Uno {
     Uno::with_image(image, Fidelity::DataSheet)
 }
 
-/// The same UNO after a number of cycles.
+/// Returns the UNO of [`uno`] after a number of cycles.
 fn after(cycles: u64, image: Image) -> Uno {
     let mut uno = uno(image);
     uno.run_cycles(cycles);
     uno
 }
 
-/// The same UNO after a number of milliseconds.
+/// Returns the UNO of [`uno`] after a number of milliseconds.
 fn after_ms(ms: u64, image: Image) -> Uno {
     after(ms * CYCLES_PER_MS, image)
 }
@@ -59,7 +59,7 @@ fn mark_cycles(uno: &Uno) -> Vec<u64> {
     uno.marks().iter().map(|mark| mark.cycle).collect()
 }
 
-/// The cycles between consecutive events.
+/// Returns the number of cycles between each two consecutive events.
 fn distances(cycles: &[u64]) -> Vec<u64> {
     cycles.windows(2).map(|pair| pair[1] - pair[0]).collect()
 }

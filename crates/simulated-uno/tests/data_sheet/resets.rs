@@ -7,14 +7,14 @@ use simulated_uno::{
 
 use super::{after, after_ms, both_after, causes, marks, text, uno};
 
-/// A program whose main runs these statements once.
+/// Compiles a program whose main function runs these statements once.
 fn program_once(body: &str) -> Image {
     c(&format!(
         "#include <avr/io.h>\nint main(void) {{ {body} for (;;) {{}} }}"
     ))
 }
 
-/// Shows MCUSR at each start and leaves it.
+/// Compiles a program that shows MCUSR at each start and does not change it.
 fn show_cause() -> Image {
     program_once("GPIOR0 = MCUSR;")
 }
@@ -27,8 +27,8 @@ fn reset(uno: &mut Uno) {
 
 #[test]
 fn mcusr_gathers_the_causes_until_power_on() {
-    // "The bit is reset by a Power-on Reset, or by writing a logic zero to the
-    // flag" (11.9.1), of EXTRF, BORF and WDRF.
+    // "The bit is reset by a Power-on Reset, or by writing a logic zero to the flag" (11.9.1): the data sheet says
+    // this of EXTRF, BORF and WDRF.
     let mut uno = after_ms(1, show_cause());
     reset(&mut uno);
     uno.set_supply_mv(2500.0);
@@ -72,8 +72,8 @@ fn stock_simavr_forgets_every_cause_but_the_last() {
 
 #[test]
 fn sram_and_registers_survive_every_reset_but_power_on() {
-    // "During reset, all I/O Registers are set to their initial values" (11.1):
-    // SRAM and r0 to r31 are not among them.
+    // "During reset, all I/O Registers are set to their initial values" (11.1): SRAM and r0 to r31 are not I/O
+    // registers.
     let image = assembler(
         "lds r18, 0x0234
          out GPIOR0, r18
@@ -157,7 +157,7 @@ fn a_reset_makes_every_pin_an_input_and_ends_its_pulse() {
 
 #[test]
 fn a_timer_is_stopped_after_a_reset() {
-    // CTC with a match every 1000 cycles; after the reset the program only looks.
+    // CTC with a match every 1000 cycles; after the reset the program only reads.
     let image = program_once(
         "if (MCUSR & 2) {
             OCR1A = 77; GPIOR0 = TCNT1L;
@@ -227,7 +227,7 @@ fn a_serial_line_goes_on_after_a_reset() {
     uno.run_cycles(3 * 1389 + 700);
     uno.reset();
     uno.run_ms(3);
-    // `c` was on its way back, `d` on its way in.
+    // At the reset, the UNO was sending `c` back and receiving `d`.
     assert_eq!(text(&uno), b"abefgh");
 }
 

@@ -1,11 +1,11 @@
-//! Tests of a line to the UNO and the line that it answers.
+//! Tests of `Uno::say`, which sends a line to the UNO and returns its answer.
 
 use simulated_uno::avr_gcc::c;
 use simulated_uno::{State, Uno};
 
 use super::{BOTH, after_ms, uno};
 
-/// 115 200 baud; answers each line with its capitals. `x` says nothing, `!` halts.
+/// Program at 115 200 baud that answers each line in capitals. It ignores `x` and halts at `!`.
 const CAPITALS: &str = r"
     #include <avr/io.h>
     #include <avr/sleep.h>
@@ -36,7 +36,7 @@ fn an_answer_is_the_next_line_from_the_uno_without_its_end() {
 
 #[test]
 fn a_second_of_silence_in_the_chips_time_counts_as_no_answer() {
-    // Stays deaf: nothing is echoed and nothing ends a line.
+    // The program never reads the line, so there is no answer.
     let mut uno = uno(c("int main(void) { for (;;) {} }"));
     assert_eq!(uno.say("anybody"), None);
     assert!((1000.0..1001.0).contains(&uno.ms()), "{}", uno.ms());

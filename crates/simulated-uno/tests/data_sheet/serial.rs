@@ -1,16 +1,16 @@
-//! Tests of the simulated serial line against the data sheet: rate, loss and flood.
+//! Tests of the simulated serial line against the data sheet: baud rate, lost bytes, framing errors and floods.
 
 use simulated_uno::avr_gcc::c;
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, Uno};
 
 use super::{BOTH, after, after_ms, both_after, distances, marks, text, uno};
 
-/// Cycles of a 10-bit frame at 115 200 baud, as the sender counts them.
+/// Cycles of a 10-bit frame at 115 200 baud, at the sender's exact rate.
 const FRAME: f64 = 10.0 * 16_000_000.0 / 115_200.0;
-/// And as the UNO does with UBRR = 16, U2X: 136 cycles a bit.
+/// Cycles of a 10-bit frame that the UNO sends with UBRR = 16 and U2X: 136 cycles for each bit.
 const UNO_FRAME: u64 = 10 * 17 * 8;
 
-/// 115 200 baud; then `body` in an endless loop.
+/// Compiles a program at 115 200 baud that runs `body` in an endless loop.
 fn program(body: &str) -> Image {
     c(&format!(
         "#include <avr/io.h>
@@ -46,7 +46,7 @@ fn an_echo_arrives_a_frame_after_its_byte() {
     uno.send(b"x");
     uno.run_ms(1);
     let echo = uno.transmitted()[0].cycle - start;
-    // Received in the middle of the stop bit, polled within some 20 cycles.
+    // Received in the middle of the stop bit; the polling loop takes up to about 20 cycles.
     let earliest = (0.95 * FRAME) as u64 + UNO_FRAME;
     assert!(
         (earliest..earliest + 30).contains(&echo),
@@ -60,7 +60,7 @@ fn bytes_go_out_back_to_back_at_ten_bits_each() {
     uno.run_ms(10);
     let stamps: Vec<u64> = uno.transmitted().iter().map(|byte| byte.cycle).collect();
     assert!(stamps.len() > 100);
-    // The timer may find the CPU in mid-instruction; that does not accumulate.
+    // The timer event may come in mid-instruction; that error does not accumulate.
     assert!(
         distances(&stamps)
             .iter()
@@ -82,7 +82,7 @@ fn the_sender_keeps_the_baud_rate_in_the_long_run() {
 
 #[test]
 fn two_bytes_wait_and_a_third_in_the_shift_register() {
-    // Reads nothing for 2 ms, in which 20 bytes could come.
+    // The program reads nothing for 2 ms, in which 20 bytes can arrive.
     let late = "_delay_ms(2); for (unsigned char i = 0; i < 5; i++) put(get());";
     for (sent, kept, lost) in [
         ("abc", &b"abc"[..], 0),
@@ -152,13 +152,13 @@ fn the_data_register_interrupt_feeds_the_line_without_a_gap() {
 
 #[test]
 fn a_byte_written_while_the_transmitter_is_full_is_ignored() {
-    // One in the shift register, one waiting; there is no place for a third.
+    // One byte is in the shift register and one waits; there is no room for a third.
     let body = "UDR0 = 'a'; UDR0 = 'b'; UDR0 = 'c'; _delay_ms(1); put('d'); for (;;) {}";
     let uno = after_ms(3, program(body));
     assert_eq!(text(&uno), b"abd");
 }
 
-/// The first byte that a program shows after another was sent at this rate.
+/// Returns the first byte that a program shows after another byte was sent at this rate.
 fn shown_at(baud: f64, byte: u8, body: &str) -> u8 {
     let mut uno = uno(program(body));
     uno.set_baud(baud);
@@ -180,16 +180,16 @@ fn a_wrong_baud_rate_is_a_framing_error() {
 fn at_a_wrong_baud_rate_other_bytes_are_read() {
     let read = |baud| shown_at(baud, b'0', "GPIOR0 = get();");
     assert_eq!(read(115_200.0), b'0');
-    // '0' is 0b0011_0000. A sender twice as slow has sent its start bit and four data bits, all of
-    // them 0, when the UNO has sampled its eight: at 0.73, 1.22, ... 4.16 bits of the sender.
+    // '0' is 0b0011_0000. Until the UNO has taken its eight samples, a sender that is half as fast has sent its
+    // start bit and four data bits, all 0: the samples are at 0.73, 1.22, ... 4.16 bits of the sender.
     assert_eq!(read(57_600.0), 0);
-    // Twice as fast: sampled at 2.9 (0), 4.9 (0), 6.9 (1), 8.8 (0) and then in the silence.
+    // Twice as fast: sampled at 2.9 (0), 4.9 (0), 6.9 (1), 8.8 (0) and then on the idle line (1).
     assert_eq!(read(230_400.0), 0b1111_0100);
 }
 
 #[test]
 fn a_low_stop_bit_is_a_framing_error_of_that_byte_alone() {
-    // The flag is valid until UDR0 is read, so it is looked at first (data sheet 20.7.4).
+    // The flag is valid until UDR0 is read, so the program reads it first (data sheet 20.7.4).
     let body = "unsigned char status; while (!((status = UCSR0A) & 0x80)) {}
                 GPIOR0 = status & 0x10; GPIOR0 = UDR0;";
     for fidelity in BOTH {
@@ -207,7 +207,7 @@ fn a_low_stop_bit_is_a_framing_error_of_that_byte_alone() {
 
 #[test]
 fn a_framing_error_waits_with_its_byte_and_goes_with_it() {
-    // Reads nothing for 2 ms; then how the status changes with each byte read.
+    // The program reads nothing for 2 ms; then it shows the status before each byte and after the last.
     let body = "_delay_ms(2);
                 for (unsigned char i = 0; i < 3; i++) { GPIOR0 = UCSR0A & 0x90; (void)UDR0; }
                 GPIOR0 = UCSR0A & 0x90;";
@@ -261,7 +261,7 @@ fn bytes_sent_to_a_sleeping_board_arrive_on_time_however_the_run_is_cut() {
     let whole = run(1);
     assert_eq!(whole.len(), 5);
     let arrival = 12_345 + (0.95 * FRAME).ceil() as u64;
-    // entry from sleep 8, jmp 3, some pushes and a read
+    // entry from sleep 8, jmp 3, a few pushes and the read
     assert!(
         (arrival..arrival + 40).contains(&whole[0].cycle),
         "{whole:?}"

@@ -5,17 +5,17 @@ use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, ResetCause, State, Uno};
 
 use super::{FIXED, after, after_ms, distances, mark_cycles, marks, uno};
 
-/// 2 048 cycles of the 128 kHz oscillator: the shortest time-out.
+/// 2 048 cycles of the 128 kHz oscillator: the shortest time-out, in CPU cycles.
 const MIN_TIMEOUT: u64 = 16 * CYCLES_PER_MS;
 
-/// Cycles of the watchdog's resets.
+/// Returns the cycles of the resets by the watchdog.
 fn watchdog_resets(uno: &Uno) -> Vec<u64> {
     let resets = uno.reset_events().into_iter();
     let bites = resets.filter(|reset| reset.cause == ResetCause::Watchdog);
     bites.map(|reset| reset.cycle).collect()
 }
 
-/// `set(value)` runs the timed sequence and writes `value`.
+/// Compiles a program in which `set(value)` runs the timed sequence and writes `value` to WDTCSR.
 fn program(body: &str) -> Image {
     c(&format!(
         "#include <avr/io.h>
@@ -33,7 +33,7 @@ fn run(body: &str, ms: u64) -> Uno {
     after_ms(ms, program(body))
 }
 
-/// A UNO whose main runs these statements once, after MCUSR has been cleared.
+/// Returns a UNO whose main program clears MCUSR and then runs these statements once.
 fn run_once(body: &str, ms: u64) -> Uno {
     run(
         &format!("int main(void) {{ MCUSR = 0; {body} for (;;) {{}} }}"),
@@ -41,7 +41,7 @@ fn run_once(body: &str, ms: u64) -> Uno {
     )
 }
 
-/// Cycles from a write to GPIOR0 to the first reset by the watchdog.
+/// Returns the number of cycles from a write to GPIOR0 to the first reset by the watchdog.
 fn to_the_bite(uno: &Uno, mark: usize) -> u64 {
     watchdog_resets(uno)[0] - uno.marks()[mark].cycle
 }
@@ -51,7 +51,7 @@ fn every_prescaler_gives_the_time_out_of_table_11_2() {
     // "WDP3:0 0 to 9: 2K to 1024K cycles, 16 ms to 8.0 s" at 128 kHz.
     for wdp in 0..10u8 {
         let value = 0x08 | (wdp & 7) | (wdp & 8) << 2;
-        // Once only, so that the reset is seen before the next.
+        // The program switches the watchdog off after one reset, so that no second one follows.
         let body = format!(
             "int main(void) {{
                 if (MCUSR & 8) {{ MCUSR = 0; set(0); for (;;) {{}} }}
@@ -98,7 +98,7 @@ fn the_time_runs_from_the_last_wdr_or_from_where_the_watchdog_was_switched_on() 
     }
 }
 
-/// Starts at 16 ms; then WDCE and WDE, `count` nops, and 0 to WDTCSR.
+/// Starts the watchdog with 16 ms; then sets WDCE and WDE, waits `count` nops, and writes 0 to WDTCSR.
 fn off_after(count: usize) -> Uno {
     let source = format!(
         "ldi r16, 0 $ out MCUSR, r16
@@ -234,7 +234,7 @@ fn after_its_reset_the_watchdog_stays_on_at_16_ms_until_wdrf_is_cleared() {
     let uno = run(body, 128 + 40);
     assert_eq!(marks(&uno), [8, 8, 8, 8, 8, 8]);
     let bites = watchdog_resets(&uno);
-    // To the end of the instruction in which the time is over.
+    // The reset comes at the end of the instruction in which the time-out occurs.
     assert!((bites[1] - bites[0]).abs_diff(MIN_TIMEOUT) < 3, "{bites:?}");
     assert!((bites[2] - bites[1]).abs_diff(MIN_TIMEOUT) < 3, "{bites:?}");
 

@@ -1,12 +1,12 @@
-//! Generated mistakes: every place of the code where an operator, a number or a call can be
-//! changed, and a random sample of them.
+//! Generated mistakes: all places of the code where an operator, a number or a call can be changed, and a random
+//! sample of them.
 
 use fastrand::Rng;
 
 use super::list::Mutant;
 
-/// Files that make only the console's text. Every other file of the core, the
-/// board's and the pulses' move a servo or a saved value.
+/// Files that only produce the console's text. All other files of the core, of the board's code and of the pulses
+/// can move a servo or change a saved value.
 const TEXT: [&str; 8] = [
     "answer.rs",
     "console.rs",
@@ -18,7 +18,7 @@ const TEXT: [&str; 8] = [
     "word.rs",
 ];
 
-/// Files that do not run on the chip, or hold tables of another program.
+/// Files that do not run on the chip, or that hold tables of another program.
 const HOST_ONLY: [&str; 7] = [
     "tests",
     "finder/misread.rs",
@@ -29,7 +29,7 @@ const HOST_ONLY: [&str; 7] = [
     "section/seal.rs",
 ];
 
-/// Operators, each with the one that replaces it.
+/// Operators, each with its replacement.
 const SWAPS: [(&str, &str); 19] = [
     (" == ", " != "),
     (" != ", " == "),
@@ -52,7 +52,7 @@ const SWAPS: [(&str, &str); 19] = [
     ("saturating_sub(", "wrapping_add("),
 ];
 
-/// True if the file has code that fresh mistakes are made in.
+/// True if the file has code in which mistakes are generated.
 pub fn is_firmware(file: &str) -> bool {
     let folders = ["crates/core/src/", "src/board/", "crates/pulses/src/"];
     let host_only = HOST_ONLY.iter().any(|part| file.contains(part));
@@ -65,14 +65,14 @@ pub fn moves(file: &str) -> bool {
     !TEXT.iter().any(|part| name.starts_with(part))
 }
 
-/// Every mistake that can be made in a file.
+/// Returns every mistake that can be generated in a file.
 pub fn all(file: &str, text: &str) -> Vec<Mutant> {
     let code = text.split("#[cfg(test)]").next().unwrap_or_default();
     let lines: Vec<&str> = code.lines().collect();
     let mut mutants = Vec::new();
     for (n, line) in lines.iter().enumerate() {
         for (wrong, changed) in changes(line) {
-            // Enough of the lines before it to make it unique.
+            // Includes as many previous lines as make the text unique.
             let mut first = n;
             while first > 0 && text.matches(&lines[first..=n].join("\n")).count() > 1 {
                 first -= 1;
@@ -136,7 +136,7 @@ fn changes(line: &str) -> Vec<(String, String)> {
     changes
 }
 
-/// The decimal numbers of a line of code, each with its index.
+/// Returns the decimal numbers of a line of code, each with its index.
 fn numbers(code: &str) -> Vec<(usize, &str)> {
     let mut found = Vec::new();
     let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '.';
@@ -155,7 +155,7 @@ pub fn shuffle(mut mutants: Vec<Mutant>, seed: u64) -> Vec<Mutant> {
     mutants
 }
 
-/// The Wilson interval of a rate, 95 %: within it the true rate lies in 19 of 20 samples.
+/// Returns the Wilson interval of a rate at 95 %: it contains the true rate in 19 of 20 samples.
 pub fn wilson(noticed: usize, tried: usize) -> (f64, f64) {
     const Z: f64 = 1.96;
     let n = tried.max(1) as f64;

@@ -1,9 +1,9 @@
-//! The list of mistakes: see the head of `mutants.txt`.
+//! The list of deliberate mistakes; the head of `mutants.txt` describes its format.
 
 /// A mistake to be made in one file.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Mutant {
-    /// The file, from the root of the tree.
+    /// The file's path from the root of the tree.
     pub file: String,
     /// The description of the mistake.
     pub wrong: String,
@@ -11,18 +11,18 @@ pub struct Mutant {
     pub test: Option<String>,
     /// The package whose own tests must notice the mistake, for code that also runs on the host.
     pub package: Option<String>,
-    /// True if it was generated.
+    /// True if the mistake was generated.
     pub is_fresh: bool,
-    /// Line of the list at which the entry begins.
+    /// Line of the list at which the entry begins or, for a generated mistake, line of the file.
     pub line: usize,
-    /// The text that is replaced.
+    /// The correct text, which is replaced.
     pub old: String,
-    /// The text in its place.
+    /// The text that replaces it.
     pub new: String,
 }
 
 impl Mutant {
-    /// No mistake, in a file of the core with this text.
+    /// Returns a mistake that changes nothing, in a file of the core with this text.
     pub fn none(file: &str, text: String) -> Self {
         Self {
             file: file.into(),
@@ -35,7 +35,7 @@ impl Mutant {
         }
     }
 
-    /// The file's text with the mistake in it.
+    /// Returns the file's text with the mistake in it.
     ///
     /// # Errors
     /// Fails if the old text is not in the file, or more than once.
@@ -51,7 +51,7 @@ impl Mutant {
 /// Reads the entries of `mutants.txt`.
 ///
 /// # Errors
-/// Fails for an unknown line, or an entry without a file, a mistake or texts.
+/// Fails for an unknown line, or an entry without a file, a description or an old text.
 pub fn read(list: &str) -> Result<Vec<Mutant>, String> {
     let mut mutants = Vec::new();
     let mut open: Option<Mutant> = None;
@@ -94,7 +94,7 @@ pub fn read(list: &str) -> Result<Vec<Mutant>, String> {
     Ok(mutants)
 }
 
-/// Adds a line; line feeds separate the lines.
+/// Appends a line; line feeds separate the lines.
 fn append_line(text: &mut String, line: &str) {
     if !text.is_empty() {
         text.push('\n');

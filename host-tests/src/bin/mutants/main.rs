@@ -1,19 +1,17 @@
-//! `make mutants`: makes the mistakes of `host-tests/mutants.txt` in a copy of the tree,
-//! one at a time, and reports those that no test notices.
+//! Mutation tests of the firmware, `make mutants`: makes the mistakes of `host-tests/mutants.txt` in a copy of the
+//! tree, one at a time, and reports those that no test notices.
 //!
-//! Most of the code in that list is the board's: it runs nowhere but in the firmware, so
-//! no tool for host crates reaches it. The entries of the core must be found by trouble
-//! at random moments in the running image or, if an entry names a package, by that
-//! package's own tests. The tests are built once, from the tree as it is, and given each
-//! mistaken firmware by LIZARD_ELF.
+//! Most of the listed mistakes are in the board's code. It runs only in the firmware, so no tool for host crates
+//! reaches it. Mistakes in the core must be noticed by the tests with trouble at random moments in the running
+//! image or, if an entry names a package, by that package's own tests. The tests are built once, from the unchanged
+//! tree, and get each mistaken firmware by LIZARD_ELF.
 //!
-//! Run it from the folder `host`. Arguments: parts of a file's name or of the
-//! description of the mistake; entries that contain one of them are tried, without arguments all.
+//! Run it from the folder `crates`. Arguments: parts of a file's name or of a mistake's description. It tries the
+//! entries that contain one of them, or all entries if there are no arguments.
 //!
-//! With SAMPLE=60 it makes that many generated mistakes ([`fresh`]), drawn by SEED from the
-//! firmware's whole code, and prints the rate at which tests notice them, with its interval.
-//! A mistake in the core is tried on the core's own tests first, then on
-//! the model checker, then in the running image.
+//! With SAMPLE=60 it makes that many generated mistakes ([`fresh`]) instead, drawn by SEED from the whole code of
+//! the firmware, and prints the rate at which tests notice them, with its interval. A mistake in the core is tried
+//! first on the core's own tests, then on the model checker, then in the running image.
 
 mod fresh;
 mod list;
@@ -26,11 +24,11 @@ use std::time::Instant;
 
 use list::Mutant;
 
-/// Time after which tests count as hanging, s.
+/// Time after which the tests count as hanging, s.
 const TIMEOUT: u32 = 1_800;
 
-/// Processor time after which a test program counts as hanging, s: one takes a minute and a half at most,
-/// whatever else the machine does.
+/// Processor time after which a test program counts as hanging, s. A program takes at most a minute and a half of
+/// it, whatever else runs on the machine.
 const CPU_TIMEOUT: u32 = 240;
 
 /// The root of the repository.
@@ -38,11 +36,11 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// The outcome of a mistake.
+/// The outcome of the tests of a mistake.
 enum Outcome {
     Caught(String),
     Lives,
-    /// The compiler refuses it.
+    /// The code with the mistake does not compile.
     NoProgram,
 }
 
@@ -66,7 +64,7 @@ fn number(name: &str) -> Option<u64> {
     std::env::var(name).ok()?.parse().ok()
 }
 
-/// Tries `count` generated mistakes; returns the number that no test notices.
+/// Tries `count` generated mistakes. Returns the number that no test notices.
 fn sample(parts: &[String], count: usize, seed: u64) -> Result<usize, String> {
     let scratch = Scratch::copy()?;
     let mut mutants = Vec::new();
@@ -83,7 +81,7 @@ fn sample(parts: &[String], count: usize, seed: u64) -> Result<usize, String> {
     if !matches!(scratch.judge(&unchanged)?, Outcome::Lives) {
         return Err("a test fails without any mistake".into());
     }
-    // Numbers of noticed and of tried mistakes: those that move a servo or a saved value, and the others.
+    // Numbers of noticed and of tried mistakes: in code that moves a servo or a saved value, and in other code.
     let mut tally = [[0; 2]; 2];
     for mutant in fresh::shuffle(mutants, seed) {
         let [moving, rest] = tally;
@@ -92,7 +90,7 @@ fn sample(parts: &[String], count: usize, seed: u64) -> Result<usize, String> {
         }
         let fate = match scratch.judge(&mutant)? {
             Outcome::NoProgram => continue,
-            // A hundred tests notice some.
+            // Up to a hundred tests may notice a mistake; the first is enough.
             Outcome::Caught(test) => {
                 format!("caught by {}", test.split(',').next().unwrap_or(&test))
             }
@@ -117,11 +115,12 @@ fn sample(parts: &[String], count: usize, seed: u64) -> Result<usize, String> {
     Ok(tally.iter().map(|[noticed, tried]| tried - noticed).sum())
 }
 
-/// Tries the listed mistakes; returns the number that no test notices.
+/// Tries the listed mistakes. Returns the number that no test notices.
 fn run(parts: &[String]) -> Result<usize, String> {
     let path = root().join("host-tests/mutants.txt");
     let list = list::read(&text(&path)?).map_err(|error| format!("mutants.txt, {error}"))?;
-    // All old texts first: a list that is out of date is an error, whatever is tried.
+    // Checks the old texts of all entries first: a list that is out of date is an error, even if only some are
+    // tried.
     for mutant in &list {
         let made = mutant.make(&text(&root().join(&mutant.file))?);
         made.map_err(|e| format!("mutants.txt, line {}: {}: {e}", mutant.line, mutant.file))?;
@@ -170,7 +169,7 @@ fn text(path: &Path) -> Result<String, String> {
     fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))
 }
 
-/// A copy of the tree to make mistakes in, with build folders of its own.
+/// A copy of the tree in which mistakes are made, with its own build folders.
 struct Scratch {
     folder: PathBuf,
     /// The files of the copy.
@@ -178,7 +177,7 @@ struct Scratch {
 }
 
 impl Scratch {
-    /// Copies all files that git tracks, from the working tree.
+    /// Copies all files that git tracks, as they are in the working tree.
     fn copy() -> Result<Self, String> {
         let folder = root().join("target/mutants");
         let listed = Command::new("git")
@@ -198,7 +197,7 @@ impl Scratch {
         Ok(scratch)
     }
 
-    /// Writes a file of the copy, unless it holds that already: a build looks at times.
+    /// Writes a file of the copy, unless it already has these bytes: cargo rebuilds files with a new time.
     fn write(&self, name: &str, bytes: &[u8]) -> Result<(), String> {
         let path = self.folder.join("tree").join(name);
         if fs::read(&path).is_ok_and(|before| before == bytes) {
@@ -209,7 +208,7 @@ impl Scratch {
         written.map_err(|error| format!("{}: {error}", path.display()))
     }
 
-    /// Builds the firmware of the copy; `None` where the compiler refuses it.
+    /// Builds the firmware of the copy. Returns `None` if it does not compile.
     fn firmware(&self) -> Result<Option<PathBuf>, String> {
         let build = self.folder.join("build");
         let status = Command::new("cargo")
@@ -224,9 +223,9 @@ impl Scratch {
         Ok(status.success().then_some(elf))
     }
 
-    /// Makes a mistake, runs the tests, and undoes it.
+    /// Makes a mistake, runs the tests and undoes the mistake.
     fn judge(&self, mutant: &Mutant) -> Result<Outcome, String> {
-        // The text is the copy's, since the tree may be edited meanwhile.
+        // Reads the copy's text, since the original tree may be edited meanwhile.
         let right = text(&self.folder.join("tree").join(&mutant.file))?;
         self.write(&mutant.file, mutant.make(&right)?.as_bytes())?;
         let fate = match &mutant.package {
@@ -241,7 +240,7 @@ impl Scratch {
         let Some(elf) = self.firmware()? else {
             return Ok(Outcome::NoProgram);
         };
-        // The likely tests first, since all of them take a minute.
+        // The likely tests run first, since all of them together take a minute.
         for filter in mutant.test.as_deref().into_iter().chain([""]) {
             match tests(&elf, filter)? {
                 None => return Ok(Outcome::Caught("tests that hang".into())),
@@ -254,8 +253,8 @@ impl Scratch {
         Ok(Outcome::Lives)
     }
 
-    /// Runs the tests of a package of the copy: those that should notice, then all; for a fresh
-    /// mistake the model checker's and those of the image, too.
+    /// Runs the tests of a package of the copy: those that should notice the mistake, then all. For a generated
+    /// mistake, also those of the model checker and of the image.
     fn in_its_package(&self, package: &str, mutant: &Mutant) -> Result<Outcome, String> {
         if !self
             .cargo_test(package, &["--no-run"])?
@@ -303,8 +302,8 @@ impl Scratch {
     }
 }
 
-/// Runs those of the firmware's tests whose names have `filter` in them. Returns the
-/// names of those that fail, or nothing if they do not end.
+/// Runs the firmware's tests whose names contain `filter`. Returns the names of the tests that fail, or `None` if
+/// the tests do not end.
 fn tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, String> {
     let arguments = [
         "-p",
@@ -317,7 +316,7 @@ fn tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, String> {
     let run = run_limited(
         &root().join("crates"),
         &[&arguments[..], &["--", filter]].concat(),
-        // The duration of continuous integration.
+        // Five times the default number of random inputs.
         &[
             ("LIZARD_ELF", elf.as_os_str()),
             ("LIZARD_FUZZ", "5".as_ref()),
@@ -327,7 +326,7 @@ fn tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, String> {
         return Ok(None);
     };
     if !printed.contains("test result:") {
-        // The test was started, and ended by the limit of its processor time.
+        // A test was started, and the limit of its processor time ended it.
         if printed.contains("running ") {
             return Ok(None);
         }
@@ -336,8 +335,8 @@ fn tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, String> {
     Ok(Some(failures(&printed)))
 }
 
-/// Runs a command of cargo in a folder. Returns true if the tests passed, and their output;
-/// nothing if they do not end within [`TIMEOUT`].
+/// Runs `cargo test` in a folder. Returns true if the tests passed, and their output; `None` if they do not end
+/// within [`TIMEOUT`].
 fn run_limited(
     folder: &Path,
     arguments: &[&str],
@@ -362,7 +361,7 @@ fn run_limited(
     Ok(is_over.then_some((run.status.success(), printed)))
 }
 
-/// The tests that failed, by their harness's lines.
+/// Returns the names of the tests that failed, from the output of the test harness.
 fn failures(printed: &str) -> Vec<String> {
     let name = |line: &str| {
         Some(

@@ -1,8 +1,8 @@
-//! `make other-robots`: writes random robots as files like robot.toml, for the
-//! image's tests to run on each.
+//! Generator of random robots for `make other-robots`: writes files like robot.toml, on each of which the image's
+//! tests run.
 //!
-//! Arguments: a folder, a seed, a count. The same seed writes the same robots. Ten or more
-//! must include each feature that is too rare in the files of `robots/`, or none is written.
+//! Arguments: a folder, a seed, a count. The same seed writes the same robots. If the count is ten or more, the
+//! robots must include each feature that is too rare in the files of `robots/`; otherwise none is written.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -11,7 +11,7 @@ use fastrand::Rng;
 use lizard_host_tests::random_robot::random_robot;
 use lizard_robot::Robot;
 
-/// The first analogue pin by its Arduino number: port C begins there.
+/// Arduino number of the first analogue pin, at which port C begins.
 const PORT_C: u8 = 14;
 
 fn main() -> ExitCode {
@@ -40,7 +40,7 @@ fn run(arguments: &[String]) -> Result<(), String> {
     let robots: Vec<(String, Robot)> = (0..count)
         .map(|n| random_robot(&mut Rng::with_seed(seed.wrapping_mul(1_000_003) + 1000 + n)))
         .collect();
-    // Few robots cannot have everything.
+    // Few robots cannot have all features.
     if count >= 10 {
         has_all(&robots)?;
     }
@@ -53,10 +53,10 @@ fn run(arguments: &[String]) -> Result<(), String> {
     Ok(())
 }
 
-/// A property of a robot.
+/// A property that a robot may have.
 type Has = fn(&Robot) -> bool;
 
-/// Checks that the robots have all rare features; the error names a missing one.
+/// Checks that the robots have all rare features. The error names a missing one.
 fn has_all(robots: &[(String, Robot)]) -> Result<(), String> {
     let of_interest: [(&str, Has); 5] = [
         ("a servo that is reversed", |robot| {

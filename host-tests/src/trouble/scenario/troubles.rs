@@ -1,9 +1,9 @@
-//! The troubles of a scenario.
+//! The kinds of trouble that a scenario can contain.
 
 use super::{Activity, MS, Script, Step, setup};
 
 impl Script<'_> {
-    /// Adds a trouble of a random kind and waits until it is over. In one of four cases a contact closes before.
+    /// Adds trouble of a random kind and waits until it is over. In one of four cases, a contact closes first.
     pub(super) fn add_trouble(&mut self, activity: Activity) {
         if self.rng.u8(0..4) == 0 {
             self.press();
@@ -37,14 +37,14 @@ impl Script<'_> {
         }
     }
 
-    /// Stalls main for 1 to 300 ms, and waits: a hang may end 250 ms after it began.
+    /// Stalls the main loop for 1 to 300 ms and waits as long: a hang may end 250 ms after it began.
     fn add_stall(&mut self) {
         let cycles = self.rng.u64(MS..300 * MS);
         self.steps.push(Step::Stall(cycles));
         self.steps.push(Step::Wait(cycles));
     }
 
-    /// Lowers the supply for a while, perhaps below the minimum of the chip, or of its RAM.
+    /// Lowers the supply for a while, perhaps below the minimum of the chip or of its RAM.
     fn add_dip(&mut self) {
         let mv = match self.rng.u8(0..8) {
             0 => self.rng.u16(500..1_250),
@@ -57,19 +57,19 @@ impl Script<'_> {
         self.steps.push(Step::Supply(5_000));
     }
 
-    /// The supply's levels for writing, moving and pulses, mV.
+    /// Returns the supply's minimum for writing, moving and pulses, mV.
     fn levels(&self) -> [u16; 3] {
         let board = self.robot.supplies().board;
         board.map(|volts| (1_000.0 * volts) as u16)
     }
 
-    /// Lowers the supply, and for a moment even more.
+    /// Lowers the supply for a while, and then briefly even more.
     fn add_sag(&mut self) {
         let [slow, stop, rest] = self.levels();
         let first = self.rng.u16(stop - 50..slow + 50);
         let second = self.rng.u16(rest - 400..stop);
         self.steps.push(Step::Supply(first));
-        // Often one or two readings before the first level counts.
+        // The first level often counts only after one or two readings.
         self.wait(50);
         self.wait_up_to(100);
         self.steps.push(Step::Supply(second));
@@ -77,7 +77,7 @@ impl Script<'_> {
         self.steps.push(Step::Supply(5_000));
     }
 
-    /// Lowers the supply for long to a level that allows moving and not writing, and orders both.
+    /// Lowers the supply for a long time to a level that allows moving but no writing, and orders both.
     fn add_low_supply(&mut self) {
         let [slow, stop, _] = self.levels();
         let mv = self.rng.u16(stop + 50..slow - 50);
@@ -91,7 +91,7 @@ impl Script<'_> {
         self.steps.push(Step::Supply(5_000));
     }
 
-    /// Adds another trouble while main is stalled.
+    /// Adds another trouble while the main loop is stalled.
     fn add_stall_with_trouble(&mut self) {
         let ms = self.rng.u64(20..300);
         self.steps.push(Step::Stall(ms * MS));
@@ -116,7 +116,7 @@ impl Script<'_> {
         self.wait(700);
     }
 
-    /// Adds a hang, and then a supply that is low for long.
+    /// Adds a hang, followed by a long time of low supply.
     fn add_two_faults(&mut self) {
         self.steps.push(Step::Stall(300 * MS));
         self.wait(300);
@@ -128,8 +128,8 @@ impl Script<'_> {
         self.steps.push(Step::Supply(5_000));
     }
 
-    /// Adds a supply that three servos pull down, long enough to detect a robot that never gives
-    /// up. The servos wake by an order, a start, or both.
+    /// Adds a supply that three servos pull down, for long enough to detect a robot that never stops trying. The
+    /// servos start after an order, a reset, or both.
     fn add_weak_supply(&mut self, activity: Activity) {
         self.steps.push(Step::Weak(true));
         match activity {

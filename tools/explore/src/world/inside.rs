@@ -1,4 +1,4 @@
-//! Rules that need the robot's inner state, or its future, which a clone shows.
+//! Rules about the robot's inner state, or about its future, which is computed on a clone.
 
 use lizard_core::console::command::effect;
 use lizard_core::console::word::Effect;
@@ -20,14 +20,14 @@ const ROUNDING: u16 = 2;
 /// Frames within which any motion of this robot ends.
 const MOTION_FRAMES: u32 = 160;
 
-/// Lines that start a gait or a routine for a limited time, shorter than those frames at half the
-/// pace.
+/// Lines that start a gait or a routine for a limited time, which ends within [`MOTION_FRAMES`]
+/// even at half the pace.
 const COUNTED: [&str; 3] = ["walk 1", "trot 2", "round 1"];
 
-/// Frames after which a contact counts for certain.
+/// Frames after which a contact is debounced for certain.
 const DEBOUNCED: u8 = 5;
 
-/// Time in which a supply is measured often enough to count.
+/// Time in which a supply is measured often enough to be believed.
 const BELIEVED: Time = 14 * FRAME;
 
 /// The observer's limits for a robot.
@@ -41,7 +41,7 @@ pub(super) fn limits(robot: &Robot) -> Limits {
     }
 }
 
-/// Returns the number that equal states of main share.
+/// Returns a number that is the same for equal states of main.
 fn fingerprint(running: &Running) -> u64 {
     fingerprint::coarse(&running.main)
 }
@@ -102,7 +102,7 @@ impl World {
         }
     }
 
-    /// Runs a clone until all promises of the answers so far are due.
+    /// Runs a clone until everything that the answers so far have promised is due.
     pub(super) fn look_ahead(&mut self) -> Verdict {
         self.observer.verdict()?;
         if let Some(time) = self.observer.due_in() {
@@ -136,7 +136,7 @@ impl World {
         Ok(())
     }
 
-    /// Closes or opens a contact. Unless a routine is under way, the robot goes on as if nothing
+    /// Closes or opens a contact. Unless a routine is under way, the robot must go on as if nothing
     /// had happened.
     pub(super) fn contact(&mut self, pin: u8, closed: bool) -> Verdict {
         let mut without = self.running.clone();
@@ -163,7 +163,7 @@ impl World {
     pub(super) fn rest_is_kept(&self) -> bool {
         let memory = &self.running.board.memory;
         let motion = self.running.motion();
-        // A memory that is busy cannot be read; its bytes can.
+        // A busy EEPROM cannot be read, but a copy of its bytes can.
         let readable = Eeprom::with(*memory.bytes());
         motion.is_resting()
             && copies::last_rest_pose(motion.robot(), &readable) == Some(*motion.pose())
@@ -177,7 +177,7 @@ impl World {
         let motion = later.motion();
         let standing = Pose::NEUTRAL.pulses(motion.calibration());
         let activity = motion.activity();
-        // A gait that no robot.toml may have has left safe ground while it braked.
+        // A gait that robot.toml could not have may have left the safe poses while it braked.
         if motion.hazard().is_some() {
             return Ok(());
         }

@@ -13,10 +13,10 @@ const ROUTINES_SIZE: u32 = 320;
 
 impl Object<'_> {
     /// Puts the functions into an order in which calls are short, with the routines of
-    /// `frames.S` in their middle: sections before those are named `.lowtext`, as in the
-    /// linker's script, and the others follow them if they are linked first. Does nothing
-    /// if one section could fall through into the next, or branches to another. Returns the
-    /// number of bytes saved.
+    /// `frames.S` in their middle: sections before the routines are named `.lowtext`, as in the
+    /// linker's script, and the others follow the routines if these are linked first. Does
+    /// nothing if one section could fall through into the next, or branches to another.
+    /// Returns the number of bytes saved.
     pub(super) fn order(&mut self) -> i64 {
         let functions = self.functions();
         let may_move = |section: &Section| {
@@ -92,8 +92,8 @@ impl Object<'_> {
         saved
     }
 
-    /// Moves a section of code and its table of relocations to the end of the file: the
-    /// linker places a section by whichever of the two it reads first.
+    /// Moves a section of code and its table of relocations to the end of the file. Both, because
+    /// the linker places a section where it reads the first of the two.
     fn move_to_the_end(&mut self, section: SectionId, is_low: bool) {
         let new = self.0.sections.copy(section);
         if let (true, Some(name)) = (is_low, new.name.strip_prefix(b".text")) {

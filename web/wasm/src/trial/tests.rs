@@ -12,7 +12,7 @@ fn trial(bars: &Bars, twin: &Twin) -> Result<Trial, NoTrial> {
     made.trial(twin).expect("bars always have a table")
 }
 
-/// The text with the gait of these bars.
+/// Puts the gait of these bars into a text of robot.toml.
 fn put_into(bars: &Bars, text: &str) -> String {
     let made = EditedGait::Bars(bars.clone());
     made.put_into(text, &paper()).expect("a table")
@@ -33,7 +33,7 @@ fn a_gait_taken_apart_and_put_together_is_the_same() {
     }
 }
 
-/// `back` is `walk` in reverse, so two programs know where it leads.
+/// `back` is `walk` in reverse, so its distance can be computed in two ways.
 #[test]
 fn a_reversed_gait_walks_as_the_core_in_reverse() {
     let (robot, twin) = with_twin();

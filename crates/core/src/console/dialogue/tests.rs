@@ -106,7 +106,7 @@ fn many_or_long_gait_names_fill_several_lines_of_help_and_none_is_too_long() {
             .collect();
         let listed: Vec<&str> = lines.iter().flat_map(|line| line.split('|')).collect();
         assert_eq!(listed, names);
-        // A line ends only where the next name has no room: with the prefix and the bar.
+        // A line ends only where the next name does not fit, with the prefix and the bar counted.
         for pair in lines.windows(2) {
             let next = pair[1].split('|').next().expect("a name");
             let whole = "# gaits: ".len() + pair[0].len() + 1 + next.len();
@@ -115,7 +115,7 @@ fn many_or_long_gait_names_fill_several_lines_of_help_and_none_is_too_long() {
     }
 }
 
-/// A robot that the guard has just stopped, with nothing read since.
+/// A robot that the guard has just stopped, and whose output has not been read since.
 fn guarded() -> Dialogue {
     let mut dialogue = standing();
     dialogue.say("stray");
@@ -172,7 +172,7 @@ fn the_reason_is_still_printed_if_stand_comes_before_it_could_be() {
 fn pending_lines_are_written_in_this_order_banner_answer_fault_reason_report() {
     let mut dialogue = Dialogue::power_on(*Sample::odd());
     dialogue.board.send(b"stray\rwatch 1\rhelp\r");
-    // Room for a line at a time, until the first one of the help is written.
+    // The transmitter has room for one line at a time until the first line of the help is written.
     let mut printed = Vec::new();
     let mut line = |dialogue: &mut Dialogue| {
         while !dialogue.board.transmitter.text.ends_with("\r\n") {
@@ -219,7 +219,7 @@ fn a_resting_robot_refuses_to_move_until_it_is_told_to_stand() {
             assert_eq!(dialogue.frame(), Pulses::default(), "{line}");
         }
         assert_eq!(dialogue.status("gait"), "rest");
-        // What moves nothing is answered, and a mistake is still a mistake.
+        // Commands that move nothing are still obeyed, and errors are still reported.
         for line in ["speed 50", "watch 0", "rest", "help"] {
             dialogue.accept(line);
         }

@@ -1,9 +1,9 @@
-//! Every command, sent at any rate and read at any other: which lines does the robot read?
+//! Simulates every command sent at one rate and read at another, to find the lines that the robot would misread
+//! as commands.
 //!
-//! The truth is the line itself, bit by bit: a receiver begins at a falling edge and looks at
-//! the middle of each of its own bits. The search goes through every state that sender and
-//! receiver can reach together, so it covers every command with every number, and every
-//! distance between the clocks of both.
+//! The serial line is modelled bit by bit: a receiver starts at a falling edge and samples the middle of each
+//! of its own bits. The search visits every state that sender and receiver can reach together, so it covers
+//! every command with every number, and every difference between their clocks.
 
 use std::borrow::ToOwned;
 use std::collections::{BTreeMap, BTreeSet};
@@ -16,7 +16,7 @@ use super::MIN_COMMAND_BYTES;
 use crate::console::word::Word;
 use crate::numbers::rate::Rate;
 
-/// The names of all gaits of robots/, and a routine's, as lines.
+/// The names of all gaits in robots/ and of a routine, as they are sent.
 static GAITS: LazyLock<BTreeSet<String>> = LazyLock::new(|| {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots");
     let files = fs::read_dir(folder).expect("the folder of robots");
@@ -35,14 +35,14 @@ static GAITS: LazyLock<BTreeSet<String>> = LazyLock::new(|| {
     names
 });
 
-/// The sender's clock is off by this share at most.
+/// Largest error of the sender's clock, as a share.
 const CLOCK_ERROR: f64 = 0.02;
 
-/// The middle of a bit as a receiver of eight samples for a bit finds it: the start bit is seen
-/// up to a sample late, and of the samples 4, 5 and 6 the majority counts.
+/// Earliest and latest point, as shares of a bit, at which a receiver with eight samples per bit reads it: the
+/// start bit is detected up to one sample late, and the majority of the samples 4, 5 and 6 counts.
 const BIT_MIDDLE: [f64; 2] = [0.5, 0.625];
 
-/// A state machine of text: what may follow, and where a command may end.
+/// A state machine of text: the bytes that may follow each state, and the states in which a command may end.
 #[derive(Default)]
 struct Text {
     next: Vec<BTreeMap<u8, usize>>,
@@ -101,7 +101,7 @@ impl Text {
         ends
     }
 
-    /// The state before the last byte; `None` if there are several.
+    /// The state from which the last byte led to state `at`; `None` if there are several.
     fn before(&self, at: usize) -> Option<usize> {
         let leads = |from: &usize| self.next[*from].values().any(|to| *to == at);
         let mut before = (0..self.next.len()).filter(leads);
@@ -147,7 +147,7 @@ impl Text {
         text
     }
 
-    /// A superset of what the parser takes: arguments of any length and number.
+    /// A superset of the lines that the parser accepts: arguments of any length and number.
     fn taken() -> Self {
         let mut text = Self::new();
         for word in GAITS
@@ -178,11 +178,11 @@ impl Text {
 enum Read {
     /// The beginning of a command, or all of it.
     Begun(usize),
-    /// The same, followed by so many bytes that continue no command.
+    /// The same, followed by this many bytes that continue no command.
     Other(usize, u8),
     /// A line with a garbled byte.
     Garbled,
-    /// A line that may be anything, since an argument was deleted.
+    /// A line of unknown content: a byte was deleted whose previous state is ambiguous.
     Deleted,
     /// A command that was read to its end, in this state.
     Ended(usize),
@@ -272,8 +272,8 @@ impl Bits {
     }
 }
 
-/// The bits of the sender at which a receiver looks, counted from its start edge: for every
-/// difference of the clocks and every position of the middle.
+/// The bits of the sender that a receiver samples, counted from the start edge: for every difference of the
+/// clocks and every position of the middle.
 fn looks(sender: Rate, receiver: Rate) -> BTreeSet<[usize; 10]> {
     // The chip's own rate, as src/board/serial.rs has it.
     let chip = 2e6 / (2e6 / f64::from(receiver.baud())).round();
@@ -316,7 +316,7 @@ fn read_byte(edges: &BTreeSet<At>, bits: &Bits, text: &Text, look: [usize; 10]) 
             .collect();
     }
     let end = |(read, at, line): (Read, usize, u16)| {
-        // Without its stop bit it is garbled.
+        // A byte without a stop bit is garbled.
         let byte = if line >> 9 == 1 {
             (line >> 1) as u8
         } else {
@@ -327,7 +327,7 @@ fn read_byte(edges: &BTreeSet<At>, bits: &Bits, text: &Text, look: [usize; 10]) 
     current.into_iter().map(end).collect()
 }
 
-/// The next start edges of each state, whatever the sender does.
+/// The start edges that can follow each state.
 fn edges_from(states: BTreeSet<At>, bits: &Bits) -> BTreeSet<At> {
     let (mut visited, mut edges) = (BTreeSet::new(), BTreeSet::new());
     let mut left: Vec<At> = states.into_iter().collect();
@@ -382,7 +382,7 @@ fn commands_read(sender: Rate, receiver: Rate) -> BTreeSet<usize> {
     commands
 }
 
-/// The pairs of different rates: true if the sender is the faster one.
+/// The pairs of different rates in which the sender is, or is not, the faster one.
 fn pairs(is_faster: bool) -> impl Iterator<Item = (Rate, Rate)> {
     let all = Rate::ALL.into_iter();
     let pairs = all.flat_map(|sender| Rate::ALL.map(|receiver| (sender, receiver)));

@@ -1,4 +1,4 @@
-//! Doubts, commands and pauses, in all orders.
+//! Wrong bytes, commands and pauses, in all orders.
 
 use super::*;
 use crate::console::line::GARBLED;
@@ -63,7 +63,7 @@ fn a_guessed_rate_is_not_confirmed_by_a_word_of_three_letters() {
         assert_eq!(finder.note_command(3), is_of_usb, "{rate:?}");
         assert!(finder.note_command(4));
         for _ in 0..3 {
-            // Nor is it a guess again after noise that does not change it.
+            // Noise that does not change the rate does not make it a guess again.
             assert_eq!(after(&mut finder, &[GARBLED; 31]), None);
             assert!(finder.note_command(1), "{rate:?} has carried a command");
         }

@@ -1,9 +1,8 @@
 //! EEPROM operations, a byte at a time between the frames.
 //!
-//! A byte takes 3.4 ms to write. So no order waits for it: main asks for the next step
-//! when it has nothing more urgent to do, and takes no input meanwhile. A weak supply may
-//! write a wrong byte, so nothing is written below a certain voltage, or before the
-//! supply has been measured.
+//! A byte takes 3.4 ms to write. So no order waits for it: the main loop asks for the next step when it has
+//! nothing more urgent to do, and takes no input meanwhile. A weak supply may write a wrong byte, so nothing is
+//! written below a certain voltage, or before the supply has been measured.
 
 use super::Control;
 use crate::control::refusal::Refusal;

@@ -1,15 +1,14 @@
-//! A routine under way: steps of robot.toml, one after another, without a person.
+//! The running routine: steps of robot.toml, one after another, without a person.
 //!
-//! A step is a gait for some cycles, a gait for some time, a rest, or a wait; a contact may end it
-//! earlier. Whatever stops the robot or moves it otherwise ends the routine, and nothing but an
-//! order or `boot` begins one.
+//! A step is a gait for some cycles, a gait for some time, a rest, or a wait; a contact may end it earlier.
+//! Every stop and every other motion ends the routine; only an order or `boot` begins one.
 
 use super::Control;
 use crate::control::contact::Contact;
 use crate::control::safety::Notice;
 use crate::numbers::gaits::{GaitId, Input, Step};
 
-/// The routine under way, if there is one.
+/// The running routine, if there is one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Routine {
     /// The routine; `stand`, which is not one, while there is none.
@@ -37,7 +36,7 @@ impl Routine {
 }
 
 impl Control {
-    /// Begins a gait for so many cycles, or a routine for so many rounds; 0 for its default.
+    /// Begins a gait for `count` cycles, or a routine for `count` rounds; 0 for its default.
     #[inline(never)]
     pub(super) fn start(&mut self, id: GaitId, count: u16) {
         let gait = self.motion.robot().gait(id);

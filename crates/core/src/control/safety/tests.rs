@@ -63,7 +63,7 @@ fn before_the_supply_has_been_measured_a_robot_may_move_but_not_write() {
         );
         assert_eq!(safety.response(Event::Move, State::Still), Response::Obey);
     }
-    // One reading decides nothing, here either.
+    // One reading decides nothing here, too.
     for _ in 0..5 {
         frame(&mut safety, &WELL);
         assert!(!safety.allows_writing());
@@ -121,8 +121,8 @@ fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says_and_no_sooner()
             while safety.frame(&WELL, &supplies, State::Walking, deadman) == Reaction::None {
                 frames += 1;
             }
-            // A line may come just before a frame: this many milliseconds have passed since,
-            // in this frame and in the one before.
+            // A command may come just before a frame: this many milliseconds have passed since then, in this
+            // frame and in the previous one.
             let (min, before) = (20 * frames, 20 * frames - 20);
             assert!(
                 min >= u32::from(deadman) && before < u32::from(deadman),

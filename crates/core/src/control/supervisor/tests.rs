@@ -1,4 +1,4 @@
-//! The tables as docs/faults.md prints them, and what must hold for all of them.
+//! The tables as docs/faults.md prints them, and the rules that hold for all their entries.
 
 use std::format;
 use std::string::String;
@@ -47,7 +47,7 @@ fn response_text(response: Response, state: State) -> String {
     }
 }
 
-/// A row of the first table for each way in which an event is answered.
+/// The rows of an event in the table of events: one for each set of supplies with equal reactions.
 fn rows(event: Event) -> Vec<String> {
     let cells = |supply| {
         let text = |state| response_text(response(event, supply, state), state);

@@ -58,7 +58,7 @@ fn every_voltage_is_printed_with_two_decimals() {
             let reading = Reading { reference, rail };
             let exact = 1024.0 * f64::from(mv) / f64::from(reference) / 10.0;
             let printed = Voltage::of_board(reading, &supplies).hundredths();
-            // More than 81.91 V is not a supply.
+            // Higher voltages are printed as 81.91 V.
             let expected = exact.floor().min(8191.0);
             assert_eq!(f64::from(printed), expected, "{reference} {mv}");
             let rail = Voltage::of_rail(reading, &WITH_RAIL).hundredths();
@@ -142,7 +142,7 @@ fn a_supply_is_good_again_a_second_after_it_has_risen_well_above_the_threshold()
     let mut supply = Supply::default();
     until(&mut supply, 4.2);
     assert_eq!(supply.level(), Level::Stop);
-    // Between the threshold and .15 V more it stays as it is.
+    // Between the threshold and 0.15 V above it, the level stays as it is.
     assert_eq!(until(&mut supply, 4.40).0, 0);
     let slow = until(&mut supply, 4.5);
     assert_eq!(slow, (50, Level::Slow));

@@ -8,7 +8,7 @@ use crate::numbers::calibration::Reach;
 use crate::numbers::section::seal;
 use crate::sample::Sample;
 
-/// A section of the odd robot, of which numbers are changed.
+/// A section of the odd robot with changed numbers.
 struct Changed(Vec<u8>);
 
 impl Changed {

@@ -1,5 +1,5 @@
-//! The guard's integers against floating point, on random robots at random poses; and the
-//! hazard that is named at each limit.
+//! Compares the guard's integers with floating point, on random robots at random poses; checks the hazard that
+//! is named at each limit.
 
 use std::vec::Vec;
 
@@ -63,7 +63,7 @@ impl Bounds {
 fn truth(robot: &Sample, pose: &Pose) -> Option<bool> {
     let bounds = Bounds::of(robot, pose);
     let Some(solution) = robot.solve(pose) else {
-        // The integers may call a loop singular that just fails to close.
+        // A loop that just fails to close may get a margin from the integers, up to the error's bound.
         return (bounds.most(|end| end.type2) < robot.measures.limits.type2).then_some(false);
     };
     let truths = [&solution.head, &solution.tail];
@@ -290,7 +290,7 @@ fn the_smallest_margin_is_found_at_every_index() {
 fn a_leg_beyond_a_change_point_has_a_negative_margin_at_either_end() {
     let robot = Sample::odd();
     for servo in 0..4 {
-        // Beyond the x axis of the chassis: where the end's own y is negative.
+        // Beyond the x axis of the chassis, the end's own y is negative.
         let neutral = f64::from(robot.neutral()[servo].0) * 360.0 / 65536.0;
         let axis = if (90.0..270.0).contains(&neutral) {
             180.0

@@ -1,4 +1,4 @@
-//! The five-bar in integers against the closed form in floating point.
+//! Compares the five-bar in integers with the closed form in floating point.
 
 use lizard_kinematics as kinematics;
 use proptest::prelude::*;
@@ -55,7 +55,7 @@ proptest! {
         let angles = [left, right].map(degrees);
         let bound = bounds::End::of(&bars, &integers, angles);
         let Ok(pose) = bars.forward(angles[0], angles[1]) else {
-            // Couplers that almost meet may do so in whole steps.
+            // Couplers that just fail to meet may meet in whole steps.
             prop_assert!(sine(actual.type2).abs() <= bound.type2, "{actual:?}");
             return Ok(());
         };
@@ -84,8 +84,8 @@ proptest! {
     }
 }
 
-/// Bars of short couplers with a small type-2 margin, where a step turns them most:
-/// found among random bars, where a bound found by trial alone did not hold.
+/// Bars of short couplers with a small type-2 margin, where a step turns them most. They were found among
+/// random bars, and exceeded a bound that had been found by trial alone.
 #[test]
 fn the_largest_errors_that_random_bars_have_found_are_within_their_bounds() {
     for ([base, crank_left, coupler_left, coupler_right, crank_right], angles, found) in [
@@ -126,7 +126,7 @@ fn the_largest_errors_that_random_bars_have_found_are_within_their_bounds() {
         let bound = bounds::End::of(&bars, &integers, angles);
         let pose = bars.forward(angles[0], angles[1]).expect("closes");
         let error = (sine(actual.type2).abs() - pose.type2).abs();
-        // The case is still the one that was found.
+        // The case still shows the error that was found.
         assert!(error > found && pose.type2 > 0.1, "{error}");
         assert!(
             error <= bound.type2 && bound.type2 < 2.5 * error,
@@ -137,7 +137,7 @@ fn the_largest_errors_that_random_bars_have_found_are_within_their_bounds() {
 
 #[test]
 fn roundings_of_the_type_2_margin_are_even_where_few_bits_are_left() {
-    // Close crank tips and long couplers: a small square of a great step.
+    // Close crank tips and long couplers: the square is small and its step large.
     let bars = kinematics::FiveBar {
         base: 20.0,
         crank_left: 30.0,
@@ -176,6 +176,6 @@ fn couplers_in_line_and_crossed_crank_tips_are_beyond_every_limit() {
     };
     // Both cranks outwards: 80 mm apart, more than the couplers reach.
     assert_eq!(at(18_000, 0), EndMargins::default());
-    // Leaning over each other: the couplers close the loop upside down.
+    // Cranks that cross: the couplers close the loop upside down.
     assert!(at(6_000, 12_000).type2 < Sine(0));
 }

@@ -83,7 +83,7 @@ fn unchanged_bytes_are_not_written_again() {
     eeprom.log.clear();
     save_all(&settings(&robot, 3), &mut eeprom);
     assert!(eeprom.log.is_empty());
-    // A save writes only bytes that differ from the copy before the last one.
+    // A save writes only the bytes that differ from the older copy, which it overwrites.
     save_all(&settings(&robot, 4), &mut eeprom);
     eeprom.log.clear();
     save_all(&settings(&robot, 5), &mut eeprom);
@@ -206,7 +206,7 @@ fn settings_for_other_servos_or_of_another_format_are_not_used() {
     format[0] = 2;
     save_all(&Settings::from_bytes(format), &mut eeprom);
     assert_eq!(loaded(&robot, &eeprom).1, Outcome::Foreign);
-    // Settings saved after that count.
+    // Settings saved after that are used.
     let own = save_all(&settings(&other, 5), &mut eeprom);
     let (now, _) = loaded(&other, &eeprom);
     assert_eq!(now, own);
@@ -287,7 +287,7 @@ fn random_bytes_in_the_memory_are_not_read_as_settings() {
     for _ in 0..2000 {
         let bytes: [u8; 1024] = core::array::from_fn(|at| {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            // With the marks in place, so that the CRC alone is left to tell.
+            // With the marks in place, so that only the CRC can reject the bytes.
             if at % 64 == 0 {
                 0xa5
             } else {

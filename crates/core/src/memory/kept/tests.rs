@@ -9,7 +9,7 @@ use super::*;
 use crate::numbers::pose::{Pose, Pulses};
 use crate::numbers::units::{Sweep, Width};
 
-/// RAM that survives a reset, and a reset after a number of stores.
+/// RAM that survives a reset, and that may be reset after a number of stores.
 struct Ram {
     bytes: RefCell<Vec<u8>>,
     /// Number of stores until the reset; later ones are lost.
@@ -34,7 +34,7 @@ impl Ram {
         ram
     }
 
-    /// The same memory, its stores lost after `stores` of them.
+    /// A copy of the memory that loses all stores after the first `stores`.
     fn with_reset_after(&self, stores: usize) -> Self {
         let ram = Self::of(self.bytes.borrow().clone());
         ram.left.set(stores);
@@ -181,7 +181,7 @@ proptest! {
         reported in prop::sample::select(&CAUSES[..]),
     ) {
         let mut bytes = bytes;
-        // The one mark in 65 536 that passes.
+        // The mark that random bytes have once in 256 times.
         prop_assume!(bytes[MARK] != ALIVE);
         let ram = Ram::of(bytes.clone());
         let restart = begin(&ram, reported);

@@ -1,8 +1,8 @@
-//! The count of a gait: the cycles that it still has to go.
+//! The count of a gait: the cycles that are left.
 //!
-//! A gait brakes in seven frames. Meanwhile it still covers as much as in three frames at full
-//! pace, or less from a lower pace. So it begins to brake three frames before the end of its
-//! last cycle, and stops within two frames of that end.
+//! A gait brakes in seven frames. While it brakes, it still covers as much as in three frames at full pace, or
+//! less from a lower pace. So it begins to brake three frames before the end of its last cycle, and stops
+//! within two frames of that end.
 
 use super::Motion;
 use crate::motion::state::{State, Target};

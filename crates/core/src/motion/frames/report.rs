@@ -1,4 +1,4 @@
-//! The state of a motion, as others read it.
+//! The state of a motion, as other modules read it.
 
 use super::Motion;
 use crate::guard::hazard::Hazard;
@@ -6,7 +6,7 @@ use crate::motion::state::State;
 use crate::numbers::pose::{Pose, Pulses};
 
 impl Motion {
-    /// Phase of the gait, 1/2^24 cycle; 0 outside of one.
+    /// Phase of the gait, 1/2^24 cycle; 0 if no gait runs.
     pub const fn phase(&self) -> u32 {
         match self.state {
             State::Cycling { phase, .. } => phase,
@@ -24,7 +24,7 @@ impl Motion {
         matches!(self.state, State::Resting)
     }
 
-    /// The pulses of the last frame, of servos that sleep, too.
+    /// The pulses of the last frame, including those of servos that sleep.
     pub const fn sent(&self) -> &Pulses {
         &self.stance.sent
     }

@@ -1,7 +1,7 @@
 //! The first frames after a reset: the servos wake in the pose in which they are.
 //!
-//! A servo does not report its angle. A robot that rested or was held until the reset is where
-//! its saved stance says, so that it need not leap to the neutral pose.
+//! A servo does not report its angle. A robot that rested or was held until the reset is in the pose of its
+//! saved stance, so it need not jump to the neutral pose.
 
 use super::{AWAKE, Motion, WAKE_INTERVAL_FRAMES};
 use crate::memory::restart::Stance;
@@ -10,8 +10,8 @@ use crate::numbers::gaits::GaitId;
 use crate::numbers::pose::Pose;
 
 impl Motion {
-    /// Stands: the servos wake one after the other in the pose that the robot rested
-    /// in, if it is safe and within the travel; else in the neutral one.
+    /// Wakes the servos one after the other in the pose in which the robot rested, if it is safe and within the
+    /// travel, else in the neutral one; then the robot stands.
     #[inline(never)]
     pub fn wake(&mut self, rested: Option<&Pose>) {
         self.begin();
@@ -36,10 +36,9 @@ impl Motion {
         }
     }
 
-    /// Resumes servos that were held until a reset, with the pulses that they had; false if
-    /// their pose is unsafe or beyond the travel. All that had pulses get them at once. If
-    /// the robot `will_stand`, the servos wake one after the other, to spare the supply,
-    /// and then it stands.
+    /// Resumes servos that were held until a reset, with the pulses that they had. Returns false if their pose
+    /// is unsafe or beyond the travel. If the robot `will_stand`, the servos wake one after the other, to spare
+    /// the supply, and then it stands; otherwise all that had pulses get them immediately.
     #[inline(never)]
     pub fn resume(&mut self, stance: &Stance, will_stand: bool) -> bool {
         if !self.may_hold(&stance.pose) {
@@ -51,7 +50,7 @@ impl Motion {
         if will_stand {
             self.next = Some(Target::Gait(GaitId::STAND));
         } else {
-            // The next servo to wake waits as long as after any other.
+            // The next servo to wake waits for a full interval.
             let awake = stance.awake.min(AWAKE);
             self.stance.awake = awake - awake % WAKE_INTERVAL_FRAMES;
         }

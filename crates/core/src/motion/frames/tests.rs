@@ -21,7 +21,7 @@ const WAKING: u32 = 20;
 const LONG_ENOUGH: u32 = 150;
 
 impl Motion {
-    /// Awake and standing, at full pace.
+    /// A motion that is awake and stands, at full pace.
     fn standing() -> Self {
         Self::awake(Sample::odd())
     }
@@ -32,7 +32,7 @@ impl Motion {
         motion
     }
 
-    /// In a gait, some frames after it was ordered.
+    /// A motion in a gait, some frames after the gait was ordered.
     fn in_gait(name: &str, frames: u32) -> Self {
         let mut motion = Self::standing();
         motion.start(name);

@@ -1,4 +1,4 @@
-//! The tables of the couplers against triangles in floating point.
+//! The tables of the couplers, compared with triangles in floating point.
 
 use proptest::prelude::*;
 
@@ -11,8 +11,8 @@ use crate::sample::bounds::{self, KNOWN};
 /// The longest coupler that a loop's step allows.
 const MAX_COUPLER: i16 = 32_511;
 
-/// Rise and skew of couplers of these lengths with their crank tips at the
-/// distance whose quarter square is `tips_sq`, straight from the triangle.
+/// Computes rise and skew of couplers of these lengths directly from the triangle, with their crank tips at a
+/// distance whose squared half is `tips_sq`.
 fn truth(left: f64, right: f64, tips_sq: u32) -> Option<[f64; 2]> {
     let distance = 2.0 * f64::from(tips_sq).sqrt();
     let foot = (distance * distance + left * left - right * right) / (2.0 * distance);
@@ -23,7 +23,7 @@ fn truth(left: f64, right: f64, tips_sq: u32) -> Option<[f64; 2]> {
     })
 }
 
-/// The type-2 margin: 2 a b sin = rise s.
+/// The type-2 margin for a rise: 2 a b sin = rise s.
 fn type2(left: f64, right: f64, tips_sq: u32, rise: f64) -> f64 {
     2.0 * rise * f64::from(tips_sq) / (left * right)
 }
@@ -39,14 +39,14 @@ proptest! {
         is_exchanged: bool,
         share in (0.0..1.0f64, 0u8..3),
     ) {
-        // Equal, nearly equal, and any.
+        // Equal lengths, nearly equal ones, and any.
         let longer = match likeness {
             0 => shorter,
             1 => shorter + (longer % 100).min(MAX_COUPLER - shorter),
             _ => longer,
         };
         let (left, right) = if is_exchanged { (longer, shorter) } else { (shorter, longer) };
-        // Even over the range, and dense at either end.
+        // Even over the range, or dense at one of its ends.
         let share = match share {
             (share, 0) => share,
             (share, 1) => share.powi(4),
@@ -58,7 +58,7 @@ proptest! {
         let lean = bars.couplers().at(tips_sq);
         let bound = bounds::LeanError::of(left, right, [f64::from(tips_sq); 2]);
         let (left, right) = (f64::from(left), f64::from(right));
-        // A loop that almost closes may close with rounded lengths.
+        // A loop that just fails to close may close with rounded lengths.
         let [rise, skew] = truth(left, right, tips_sq).unwrap_or([0.0, f64::NAN]);
         let Some(lean) = lean else {
             prop_assert!(type2(left, right, tips_sq, rise) < KNOWN, "a lean for {rise}");
@@ -69,14 +69,14 @@ proptest! {
             f64::from(lean.skew) / 1024.0 - skew,
         ];
         if type2(left, right, tips_sq, rise) < KNOWN {
-            // An entry beyond the table's numbers is less than it should be, and below its
-            // peak the table keeps the largest rise: nothing there is read as known.
+            // An entry above the largest number of a table is cut off, and below its peak the table keeps the largest
+            // rise. No value there may give a margin above the threshold.
             let read = f64::from(lean.rise) / 1024.0 - bound.rise;
             prop_assert!(type2(left, right, tips_sq, read) < KNOWN, "rise {error:?}, {bound:?}");
             return Ok(());
         }
         prop_assert!(error[0].abs() <= bound.rise, "rise {error:?}, {bound:?}");
-        // The error of the floating-point numbers.
+        // The rounding of the floating-point reference.
         let tolerance = 1e-9;
         prop_assert!(skew.is_nan() || error[1].abs() <= bound.skew + tolerance, "skew {error:?}, {bound:?}");
         // Rounding never changes the sign of a skew.

@@ -21,7 +21,7 @@ use crate::numbers::slider::Slider;
 use crate::numbers::supplies::Supplies;
 use crate::numbers::units::{Angle, Scale};
 
-/// The algorithm of the hash by which robots are told apart.
+/// The algorithm of the hash that identifies a robot.
 static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
 /// The numbers of a robot, from which a section is made.
@@ -29,19 +29,19 @@ static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 pub struct Content {
     /// The robot's name, at most [`MAX_NAME_BYTES`] characters.
     pub name: String,
-    /// The hash by which saved settings are matched with servos.
+    /// The hash that tells if saved settings belong to these servos.
     pub servo_hash: u32,
     /// The Arduino numbers of the servos' pins, A1 to A4; 14 to 19 are A0 to A5.
     pub pins: [u8; 4],
     /// The Arduino number of the pin where the servos' rail is measured.
     pub rail: Option<u8>,
-    /// Percent of their own pace to which a low supply limits gaits, 10 to 100.
+    /// The percentage of their own pace to which a low supply limits gaits, 10 to 100.
     pub slow_pace: u8,
     /// The servos' angles in the neutral pose.
     pub neutral: [Angle; 4],
-    /// The servos' pulses and travel.
+    /// The pulse widths and the travel of the servos.
     pub calibration: [Calibration; 4],
-    /// The sweeps that the gaits need of the servos.
+    /// The range of sweeps that the gaits need of each servo.
     pub reach: [Reach; 4],
     /// The smallest margins that are allowed.
     pub limits: Limits,
@@ -53,8 +53,7 @@ pub struct Content {
     pub ends: [Loop; 2],
     /// The sliders left and right.
     pub sides: [Slider; 2],
-    /// The gaits, `stand` first, then the routines, whose first step is given by its index
-    /// among all steps.
+    /// The gaits, `stand` first, then the routines; a routine refers to its first step by its index in `steps`.
     pub gaits: Vec<Gait>,
     /// The steps of the routines.
     pub steps: Vec<Step>,
@@ -66,18 +65,18 @@ pub struct Content {
     pub maps: [Map; 4],
 }
 
-/// One end's loop, in steps of its scale.
+/// The loop of one end, in steps of its scale.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Loop {
     /// Steps in a millimetre; the margins do not need it.
     pub scale: Scale,
     /// Distance between the shafts.
     pub base: i16,
-    /// The left crank and the right one.
+    /// The left and the right crank.
     pub cranks: [i16; 2],
-    /// The left coupler and the right one.
+    /// The left and the right coupler.
     pub couplers: [i16; 2],
-    /// True if the crank tips can part so far that the couplers are nearly stretched.
+    /// True if the crank tips can be so far apart that the couplers are nearly stretched.
     pub is_near_stretched: bool,
 }
 
@@ -86,8 +85,8 @@ pub struct Loop {
 pub struct Map {
     /// The first row.
     pub first: i8,
-    /// The first and the last column of each row; in a row without certified cells the
-    /// greater one first.
+    /// The first and the last column of each row; in a row without certified cells, the first is greater than the
+    /// last.
     pub rows: Vec<[i8; 2]>,
 }
 
@@ -105,7 +104,7 @@ impl Loop {
         Bars::new([self.base, left, right], self.couplers, self.scale)
     }
 
-    /// The curves that the couplers need: rise, stretched, folded, skew.
+    /// The tables that the couplers need: rise, stretched, folded, skew.
     fn tables(&self) -> [Option<Table>; CURVES] {
         let [a, b] = self.couplers;
         [
@@ -118,8 +117,8 @@ impl Loop {
 }
 
 impl Content {
-    /// The size of the section in bytes, which may exceed a board; [`Content::section`] sometimes
-    /// needs one more, see [`super::seal()`].
+    /// The size of the section in bytes, which may exceed the flash of a board. [`Content::section`] may append a
+    /// few bytes, see [`super::seal()`].
     pub fn length(&self) -> usize {
         let mut curves = Vec::new();
         self.curves(&mut curves);
@@ -133,7 +132,7 @@ impl Content {
             + rows * size_of::<[i8; 2]>()
     }
 
-    /// The bytes of the section, which may exceed a board: see [`super::SPACE`].
+    /// The bytes of the section, which may exceed the flash of a board: see [`super::SPACE`].
     ///
     /// # Panics
     /// If a map has more than 255 rows, or the section more than 65 535 bytes.
@@ -194,7 +193,7 @@ impl Content {
         };
 
         let mut digest = CRC.digest();
-        // The maps change no decision.
+        // The hash does not include the maps: they only save time and change no decision.
         let mut without_maps = numbers;
         without_maps.parts[Part::Rows as usize] = Place { at: 0, count: 0 };
         without_maps.maps = [MapHead { first: 0, rows: 0 }; 4];
@@ -214,7 +213,7 @@ impl Content {
         sealed([header.bytes(), numbers.bytes(), &rest].concat())
     }
 
-    /// Appends the curves of both ends, equal ones only once; returns the address of each.
+    /// Appends the tables of both ends to `rest`, equal ones only once, and returns the address of each.
     fn curves(&self, rest: &mut Vec<u8>) -> [[u16; CURVES]; 2] {
         let mut written: Vec<(Table, u16)> = Vec::new();
         self.ends.each_ref().map(|end| {

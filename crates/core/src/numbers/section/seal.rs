@@ -1,9 +1,8 @@
-//! Seals a section with its length and its checksum.
+//! Sealing a section: adding its length and its checksum.
 //!
-//! A checksum of sixteen bits misses one change in 65 536. Two kinds of change are likely: a
-//! write that ended early, at any of thousands of bytes, so that erased flash follows what was
-//! written; and a flipped bit of the length. Neither may be missed. So `sealed` tries
-//! them all, and adds a byte where the checksum would miss one.
+//! A 16-bit checksum misses one change in 65 536. Two kinds of change are likely: a write that ended early, at any of
+//! thousands of bytes, so that erased flash follows the written bytes; and a flipped bit of the length. Neither may
+//! be missed. So `sealed` tries all of them, and adds a byte if the checksum would miss one.
 
 use core::mem::offset_of;
 use std::vec::Vec;
@@ -14,21 +13,21 @@ use crate::numbers::checksum::Checksum;
 /// A byte of erased flash.
 const ERASED: u8 = 0xff;
 
-/// The offsets of the length and of the checksum, which covers all bytes after it.
+/// The offset of the length; below, that of the checksum, which covers all bytes after it.
 const LENGTH: usize = offset_of!(Header, length);
 const CRC: usize = offset_of!(Header, crc);
 
-/// Writes the right checksum into a section, whatever its bytes are.
+/// Writes the correct checksum into a section, whether its content is valid or not.
 ///
 /// # Panics
-/// If there are fewer bytes than a header has.
+/// If the section is shorter than a header.
 pub fn seal(section: &mut [u8]) {
     let crc = Checksum::of(&section[CHECKED..]).0;
     section[CRC..CHECKED].copy_from_slice(&crc.to_le_bytes());
 }
 
-/// Adds length and checksum to a section. Also appends bytes until no beginning of it, and none
-/// with a flipped bit in its length, has the same checksum.
+/// Adds length and checksum to a section. Appends bytes until the checksum detects every write that ended early and
+/// every flipped bit of the length.
 ///
 /// # Panics
 /// If the section is longer than 65 535 bytes.
@@ -46,7 +45,7 @@ pub(super) fn sealed(mut section: Vec<u8>) -> Vec<u8> {
     }
 }
 
-/// The sums of a section's beginnings, from none of its bytes to all of them.
+/// The checksums of all prefixes of a section, from none of its bytes to all of them.
 fn sums(bytes: &[u8]) -> Vec<Checksum> {
     let mut sum = Checksum::NOTHING;
     let mut sums = Vec::with_capacity(bytes.len() + 1);
@@ -58,11 +57,10 @@ fn sums(bytes: &[u8]) -> Vec<Checksum> {
     sums
 }
 
-/// True if a proper prefix of the bytes, followed by erased flash, has the sum of all
-/// of them. The last bytes may equal erased flash themselves.
+/// True if a proper prefix of the bytes, followed by erased flash, has the checksum of all of them. Bytes at the end
+/// that equal erased flash do not count, since losing them changes nothing.
 fn a_beginning_passes(bytes: &[u8], sums: &[Checksum]) -> bool {
-    // The sum that a prefix must have, so that the erased bytes after it lead to the sum
-    // of all bytes.
+    // The checksum that a prefix must have so that the erased bytes after it give the checksum of all bytes.
     let mut needed = sums[bytes.len()];
     let mut is_whole = true;
     for (byte, beginning) in bytes.iter().zip(&sums[..bytes.len()]).rev() {
@@ -75,9 +73,9 @@ fn a_beginning_passes(bytes: &[u8], sums: &[Checksum]) -> bool {
     false
 }
 
-/// The sum to which this byte was added: [`Checksum::and`] backward.
+/// The checksum before `byte` was added: the inverse of [`Checksum::and`].
 const fn before(sum: Checksum, byte: u8) -> Checksum {
-    // The sum's low half came from the high half before and the byte alone.
+    // The low half follows only from the previous high half and the byte.
     let low = sum.0 as u8;
     let out = low ^ (low << 5);
     let high = out ^ (out >> 4) ^ byte;
@@ -86,8 +84,8 @@ const fn before(sum: Checksum, byte: u8) -> Checksum {
     Checksum((high as u16) << 8 | low)
 }
 
-/// True if a length that is one bit off gives the same sum, with erased flash after the
-/// section. No board accepts more than [`SPACE`] bytes.
+/// True if a length with one flipped bit gives the same checksum, with erased flash after the section. No board
+/// accepts more than [`SPACE`] bytes.
 fn another_length_passes(length: u16, sums: &[Checksum]) -> bool {
     let own_sum = sums[usize::from(length) - CHECKED];
     let is_one_off = |other: u16| (other ^ length).is_power_of_two();
@@ -107,7 +105,7 @@ mod tests {
 
     use super::*;
 
-    /// The same check, byte by byte.
+    /// Reference for [`a_beginning_passes`], byte by byte.
     fn a_beginning_has_the_sum(bytes: &[u8]) -> bool {
         let sum = Checksum::of(bytes);
         (0..bytes.len()).any(|end| {
@@ -117,7 +115,7 @@ mod tests {
         })
     }
 
-    /// The same as [`another_length_passes`], on what the flash would hold.
+    /// Reference for [`another_length_passes`], on the bytes that the flash would hold.
     fn another_length_has_the_sum(section: &[u8]) -> bool {
         let sum = Checksum::of(&section[CHECKED..]);
         let mut flash = section.to_vec();
@@ -127,7 +125,7 @@ mod tests {
         lengths.any(|length| Checksum::of(&flash[CHECKED..length]) == sum)
     }
 
-    /// Finds the two bytes that lead from one sum to another.
+    /// Finds the two bytes that change one checksum into another.
     fn pair(from: Checksum, to: Checksum) -> [u8; 2] {
         let pairs = (0..=u16::MAX).map(u16::to_le_bytes);
         let mut right = pairs.filter(|[low, high]| from.and(*low).and(*high) == to);
@@ -155,7 +153,7 @@ mod tests {
                 if other <= CHECKED || (bytes.len() + 1..length).contains(&other) {
                     continue;
                 }
-                // Shorter: the sum there. Longer: one to which the erased bytes lead back.
+                // A shorter length: the checksum there. A longer one: a checksum that the erased bytes do not change.
                 let erased = |from| (length..other).fold(from, |sum: Checksum, _| sum.and(ERASED));
                 let target = match other < length {
                     true => Some(Checksum::of(&bytes[CHECKED..other])),
@@ -191,8 +189,7 @@ mod tests {
             let mut bytes = bytes;
             bytes.extend(std::vec![ERASED; erased]);
             prop_assert_eq!(a_beginning_passes(&bytes, &sums(&bytes)), a_beginning_has_the_sum(&bytes));
-            // Two more bytes can be chosen so that the sum of a beginning is that of all:
-            // all of them are tried.
+            // Two more bytes can always be chosen so that this beginning has the checksum of all bytes.
             let end = end.min(bytes.len());
             let mut cut = bytes.clone();
             cut[end..].fill(ERASED);

@@ -1,4 +1,4 @@
-//! The pairs of positions of an end, decided by the guard and by geometry.
+//! All pairs of positions of an end's two servos, decided by the guard and by floating point.
 
 use lizard_core::guard::five_bar::EndMargins;
 use lizard_core::numbers::cells::Cells;
@@ -10,14 +10,14 @@ use super::positions::Positions;
 use super::rows::{PairSample, columns, eight_by_eight, lanes, rows_of, sine, splat};
 use super::tally::{STEPS_BAND, Tally, margin_band};
 
-/// The comparison of all pairs of an end.
+/// The comparison of guard and floating point over all pairs of an end.
 pub struct EndWalk<'a> {
     fixed: lizard_core::guard::five_bar::FiveBar<'a>,
     exact: FiveBar,
-    /// Least type-2 and type-1 margins, as robot.toml and as the firmware have them.
+    /// Smallest allowed type-2 and type-1 margins, from robot.toml; below, in the firmware's integers.
     limits: [f64; 2],
     fixed_limits: [i16; 2],
-    /// The least margin of a leg in the firmware's integers.
+    /// Smallest allowed margin of a leg, in the firmware's integers.
     fixed_leg: i16,
     end: End,
     cells: Cells<'a>,
@@ -83,7 +83,7 @@ impl<'a> EndWalk<'a> {
                     };
                     self.compare(&mut tally, margins, &truth, place);
                     let [sweep, other] = [left.sweep(row), right.sweep(column)];
-                    // Their rows are A1 and A3, their columns A2 and A4.
+                    // The maps' rows are the sweeps of A1 and A3, their columns those of A2 and A4.
                     let is_held = match self.end {
                         End::Head => self.cells.contains(sweep, other),
                         End::Tail => self.cells.contains(other, sweep),
@@ -122,7 +122,7 @@ impl<'a> EndWalk<'a> {
             type1_left,
             type1_right,
         } = margins;
-        // Where the couplers fold, no other margin matters.
+        // A pose whose couplers nearly fold is refused, whatever its other margins are.
         if truth.is_closed && truth.type2 > self.limits[0] - self.margin_band {
             Tally::raise(&mut tally.type2, (sine(type2.0).abs() - truth.type2).abs());
             for (fixed, exact) in [type1_left, type1_right].into_iter().zip(truth.type1) {
@@ -132,7 +132,7 @@ impl<'a> EndWalk<'a> {
         let (clear, crossed) = truth.clear_by(self.limits);
         let exact = clear >= 0.0 && crossed > 0.0;
         if fixed != exact {
-            // The distance of the deciding value from its limit.
+            // The distance from its limit of the value that decides.
             let by_crossing = crossed / self.crossing_band < clear / self.margin_band;
             let (excess, band) = if by_crossing {
                 (crossed.abs(), self.crossing_band)
@@ -158,7 +158,7 @@ impl<'a> EndWalk<'a> {
     }
 }
 
-/// An end at a pair of angles, in floating point.
+/// The exact values of an end at a pair of angles, in floating point.
 struct EndTruth {
     is_closed: bool,
     type2: f64,
@@ -168,8 +168,8 @@ struct EndTruth {
 }
 
 impl EndTruth {
-    /// The clearances: of the smallest margin above its limit, a sine; and of the crank tips from
-    /// crossing, mm.
+    /// The distances from the limits: of the smallest margin, a sine; and of the crank tips from crossing, mm.
+    /// Negative beyond the limit.
     #[inline(always)]
     fn clear_by(&self, [least2, least1]: [f64; 2]) -> (f64, f64) {
         if !self.is_closed {
@@ -180,15 +180,15 @@ impl EndTruth {
     }
 }
 
-/// The bands of an end in which decisions may differ: a sine around the limit of a margin, and
-/// mm around the crossing of its crank tips.
+/// The bands of an end in which decisions may differ: the distance from a margin's limit, a sine, and that from the
+/// crossing of its crank tips, mm.
 pub fn bands(robot: &Robot, end: End) -> [f64; 2] {
     let step = f64::from(1u32 << robot.content().ends[end as usize].scale.bits).recip();
     let band = margin_band(&robot.lizard().end(end), robot.limits().type2, step);
     [band, STEPS_BAND * step]
 }
 
-/// The core's name of an end.
+/// Converts an end to the core's type.
 fn part(end: End) -> part::End {
     match end {
         End::Head => part::End::Head,

@@ -1,10 +1,9 @@
-//! `lizard prove`: the integer guard against floating point at every pair of
-//! positions that two servos can take.
+//! `lizard prove`: compares the integer guard with floating point at every pair of positions that two servos can
+//! take.
 //!
-//! Every condition of a safe pose depends on one servo (a leg), on the two of an end or
-//! on the two of a side. So trying every pair of each end and of each side, in the steps
-//! in which the firmware counts angles, decides every possible pose: 1.8e18 for servos of
-//! half a turn. Nothing is sampled.
+//! Every condition of a safe pose depends on one servo (a leg), on the two servos of an end or on the two of a side.
+//! So trying every pair of each end and of each side, in the steps in which the firmware counts angles, decides every
+//! possible pose: 1.8e18 for servos with a travel of half a turn. Nothing is sampled.
 
 mod end_walk;
 mod positions;
@@ -68,18 +67,17 @@ impl Spreads for Args {
 /// The comparison of guard and geometry for one robot.
 #[derive(Clone, Debug, Serialize)]
 pub struct Proof {
-    /// Ends, sides and legs.
+    /// The findings for ends, sides and legs.
     pub findings: Vec<Finding>,
-    /// Hash of the firmware's numbers.
+    /// Hash that identifies the robot's numbers.
     pub hash: u32,
     /// Distance from a margin's limit within which the decisions may differ, a sine.
     pub margin_band: f64,
 }
 
 impl Proof {
-    /// Walks a share of the pairs of a robot with a guard, which is to be the
-    /// robot's own. `progress` is called with the number of rows walked since its
-    /// last call; [`Proof::rows`] says how many there are.
+    /// Compares a share of the pairs of a robot with a guard, normally the robot's own. `progress` is called with the
+    /// number of rows completed since its last call; [`Proof::rows`] returns their total.
     pub fn of(
         robot: &Robot,
         guard: &CoreRobot,
@@ -91,7 +89,7 @@ impl Proof {
         Self::from_tallies(robot, guard, (0..walk::PIECES).map(piece).collect())
     }
 
-    /// The proof from the tallies of all pieces.
+    /// Makes the proof from the tallies of all pieces.
     fn from_tallies(robot: &Robot, guard: &CoreRobot, pieces: Vec<Tally>) -> Self {
         Self {
             findings: walk::findings(robot, guard, pieces),
@@ -100,12 +98,12 @@ impl Proof {
         }
     }
 
-    /// Rows that [`Proof::of`] walks.
+    /// The number of rows that [`Proof::of`] walks.
     pub fn rows(guard: &CoreRobot) -> u64 {
         walk::rows(guard)
     }
 
-    /// Pairs in cells of the robot's maps, whose poses the firmware does not measure.
+    /// The number of pairs in cells of the robot's maps, whose poses the firmware does not measure.
     pub fn certified(&self) -> u64 {
         self.findings
             .iter()
@@ -113,8 +111,8 @@ impl Proof {
             .sum()
     }
 
-    /// The number of wrong decisions outside the bands, and of poses in a cell that the
-    /// guard refuses: 0 proves guard and cells.
+    /// The number of wrong decisions outside the bands, plus that of poses in a cell that the guard refuses. If it is
+    /// 0, guard and cells are proved correct.
     pub fn wrong(&self) -> u64 {
         self.findings
             .iter()
@@ -123,10 +121,10 @@ impl Proof {
     }
 }
 
-/// Compares the guard with geometry and prints the result.
+/// Compares the guard with floating point and prints the result.
 ///
 /// # Errors
-/// Fails for a wrong robot.toml; a pose that is decided wrong.
+/// Fails for an invalid robot.toml, or if a pose is decided wrong.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.spread.robot.load()?;
     let guard = robot.firmware();

@@ -1,4 +1,4 @@
-//! Rows and columns of positions, walked on all cores and eight columns at a time.
+//! The rows and columns of positions: rows are shared out to all cores, columns are computed eight at a time.
 
 use lizard_core::numbers::units::ONE_Q15;
 use lizard_kinematics::{Lanes, Vector};
@@ -7,17 +7,17 @@ use rayon::prelude::*;
 use super::positions::Positions;
 use super::tally::Tally;
 
-/// Columns that floating point takes at once.
+/// Columns that floating point computes at once.
 pub const LANES: usize = 8;
 
-/// Pieces that the rows of an end or a side are cut into.
+/// Number of pieces into which the rows of an end or a side are divided.
 pub const CUTS: usize = 64;
 
-/// A sample of the pairs: in each row, the pairs whose column has a certain remainder modulo
-/// `one_in`. The remainder differs from row to row.
+/// A sample of the pairs: in each row, the pairs whose column has a given remainder modulo `one_in`. The remainder
+/// differs from row to row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PairSample {
-    /// One pair in N is checked; at least 1.
+    /// One pair in this number is checked; at least 1.
     pub one_in: u32,
     /// Offset of the selected pairs, below `one_in`.
     pub offset: u32,
@@ -31,13 +31,13 @@ impl PairSample {
     };
 }
 
-/// The columns of a row that belong to a share.
+/// The columns of a row that belong to a sample.
 pub fn columns(share: PairSample, row: usize, count: usize) -> impl Iterator<Item = usize> {
     let first = (row + share.offset as usize) % share.one_in as usize;
     (first..count).step_by(share.one_in as usize)
 }
 
-/// Walks the rows of a piece on all cores.
+/// Computes the rows of a piece on all cores, and adds their tallies.
 pub fn rows_of(
     first: &Positions,
     cut: usize,
@@ -55,7 +55,8 @@ pub fn rows_of(
         .reduce(Tally::default, Tally::merged)
 }
 
-/// The columns of a row, eight at a time; the last ones are repeated.
+/// Calls `take` with the columns of a row, eight at a time, and with the number of valid ones; the last column is
+/// repeated to fill the eight.
 pub fn eight_by_eight(
     mut columns: impl Iterator<Item = usize>,
     mut take: impl FnMut([usize; LANES], usize),
@@ -87,7 +88,7 @@ pub fn splat(vector: Vector) -> Vector<Lanes<LANES>> {
     Vector::new(Lanes([vector.x; LANES]), Lanes([vector.y; LANES]))
 }
 
-/// A margin of the firmware as a sine.
+/// Converts a margin of the firmware to a sine.
 #[inline]
 pub fn sine(q15: i16) -> f64 {
     f64::from(q15) / f64::from(ONE_Q15)

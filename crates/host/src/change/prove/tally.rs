@@ -1,10 +1,10 @@
-//! The sums of a walk over many pairs of positions.
+//! The tally of errors and disagreements over many pairs of positions.
 
 use lizard_kinematics::FiveBar;
 use serde::{Deserialize, Serialize};
 
-/// Distance from a margin's limit within which the guard may decide otherwise than floating
-/// point, a sine; see [`margin_band`].
+/// Distance from a margin's limit within which the guard may decide differently from floating point, a sine; see
+/// [`margin_band`].
 pub const MARGIN_BAND: f64 = 0.002;
 
 /// Distance from the end of a stroke, or from the crossing of the crank tips, within which
@@ -12,10 +12,10 @@ pub const MARGIN_BAND: f64 = 0.002;
 /// paper's size.
 pub const STEPS_BAND: f64 = 4.0;
 
-/// Distance from the limit of a type-2 or type-1 margin within which decisions about an end may
-/// differ: [`MARGIN_BAND`], or the angle by which [`STEPS_BAND`] rounded steps of `step` mm
-/// turn its couplers. If the couplers are nearly in line that is a lot: they turn by the
-/// reciprocal of the sine between them, which is at least `type2`.
+/// Distance from the limit of a type-2 or type-1 margin within which decisions about an end may differ:
+/// [`MARGIN_BAND`], or if that is larger, the angle by which an error of [`STEPS_BAND`] steps of `step` mm turns the
+/// couplers. That angle is large if the couplers are nearly in line: it grows with the reciprocal of the sine between
+/// them, which is at least `type2`.
 pub fn margin_band(bars: &FiveBar, type2: f64, step: f64) -> f64 {
     let (a, b) = (bars.coupler_left, bars.coupler_right);
     let apart = (a + b).min(bars.base + bars.crank_left + bars.crank_right);
@@ -28,7 +28,7 @@ pub fn margin_band(bars: &FiveBar, type2: f64, step: f64) -> f64 {
 pub struct Tally {
     /// Pairs of positions checked.
     pub pairs: u64,
-    /// The number of pairs in a cell of the robot's maps: the guard must accept each.
+    /// The number of pairs in a cell of the robot's maps, each of which the guard must accept.
     pub certified: u64,
     /// Largest error of the type-2 margin, a sine.
     pub type2: Option<f64>,
@@ -43,14 +43,14 @@ pub struct Tally {
     /// The largest distance from the end of a stroke, or from the crossing of the crank tips,
     /// at which the decisions differ, mm.
     pub length_band: Option<f64>,
-    /// Pairs outside the band that are decided wrong.
+    /// The number of pairs outside the bands that are decided wrong.
     pub wrong: u64,
-    /// The first such pair, in words.
+    /// A description of the first such pair.
     pub example: Option<String>,
 }
 
 impl Tally {
-    /// Raises a largest value.
+    /// Raises `largest` to `value` if that is larger.
     #[inline(always)]
     pub fn raise(largest: &mut Option<f64>, value: f64) {
         if largest.is_none_or(|largest| value > largest) {
@@ -79,7 +79,7 @@ impl Tally {
         self
     }
 
-    /// Counts a pair in a cell; records it if the guard refuses it.
+    /// Counts a pair in a cell, as wrong if the guard refuses it.
     #[inline(always)]
     pub fn count_certified(&mut self, is_accepted: bool, place: impl FnOnce() -> String) {
         self.certified += 1;
@@ -90,8 +90,8 @@ impl Tally {
         }
     }
 
-    /// Records a pair that is decided differently: it is `difference` from its limit, and
-    /// `band` is allowed.
+    /// Records a pair that is decided differently at a distance of `difference` from its limit. It is wrong if
+    /// `difference` exceeds `band`.
     #[cold]
     pub fn record_difference(
         &mut self,
@@ -113,14 +113,14 @@ impl Tally {
     }
 }
 
-/// The result of comparing the guard with geometry at one end or one side.
+/// The result of comparing the guard with floating point at one end, one side or one leg.
 #[derive(Clone, Debug, Serialize)]
 pub struct Finding {
     /// `head`, `tail`, `left side`, `right side`, or the leg of a servo.
     pub part: String,
-    /// The servos that decide it.
+    /// The servos that move the part.
     pub servos: Vec<&'static str>,
-    /// The sums over its pairs.
+    /// The tally over its pairs.
     #[serde(flatten)]
     pub tally: Tally,
 }

@@ -1,4 +1,4 @@
-//! `lizard tune`: searches gaits that walk faster with servos that turn no faster.
+//! `lizard tune`: searches for gaits that walk faster while the servos turn no faster.
 
 mod report;
 
@@ -73,11 +73,11 @@ impl Spreads for Args {
     }
 }
 
-/// Searches a gait and prints it.
+/// Searches for a gait and prints it.
 ///
 /// # Errors
-/// Fails for a wrong robot.toml; a gait that does not exist or cannot be tuned; an invalid rate or
-/// name; no gait that the limits allow; an output that cannot be written.
+/// Fails for an invalid robot.toml; a gait that does not exist or cannot be tuned; an invalid rate or name; no gait
+/// that the limits allow; an output that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.spread.robot.load()?;
     let Some(report) = tune(&robot, &args)? else {
@@ -92,7 +92,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     Ok(out.flush()?)
 }
 
-/// The comparison; `None` if only one part of the search was computed.
+/// Searches for a gait and compares it with the given one; `None` if this process computed only a part of the search.
 fn tune(robot: &Robot, args: &Args) -> Result<Option<Comparison>, Failure> {
     let gait = gait_to_surpass(robot, &args.gait)?;
     check_name(robot, &args.name)?;
@@ -126,7 +126,7 @@ fn gait_to_surpass<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, 
     })
 }
 
-/// Refuses a name that robot.toml already has or does not allow.
+/// Refuses a name that robot.toml already has or that is invalid.
 fn check_name(robot: &Robot, name: &str) -> Result<(), Failure> {
     let refused = |reason: String| Err(Failure::Input(format!("--name {name}: {reason}")));
     if robot.gait(name).is_some() {
@@ -140,8 +140,8 @@ fn check_name(robot: &Robot, name: &str) -> Result<(), Failure> {
     }
 }
 
-/// The best gait of all kinds; `None` if only one part of the search was computed. Kinds are
-/// searched apart from each other, and so are the pieces; the trials of a round on all cores.
+/// Finds the best gait of all kinds; `None` if this process computed only a part of the search. Each kind is searched
+/// independently, so it can be a piece of its own; the trials of a round are shared out to all cores.
 fn search_all(tuning: &Tuning, args: &Args) -> Result<Option<BuiltGait>, Failure> {
     let rounds = args.rounds as usize;
     let kinds = args.spread.own(Kind::ALL.len());
@@ -214,7 +214,7 @@ mod tests {
         assert!(found.rate <= walk.rate, "{found:?}");
         assert!(found.speeds[0] > 1.15 * walk.speeds[0], "{report:?}");
         assert!(report.faster >= 195, "{report:?}");
-        // What is printed may be appended to a robot.toml, and walks as it says.
+        // The printed text may be appended to a robot.toml, and its gait walks as predicted.
         let mut printed = Vec::new();
         report::print(&report, &mut printed).expect("written");
         let printed = String::from_utf8(printed).expect("text");

@@ -1,10 +1,10 @@
-//! The result as text.
+//! The result of `lizard tune` as text.
 
 use std::io::{self, Write};
 
 use lizard_tune::{Comparison, SPREAD};
 
-/// Prints the comparison as a piece of a robot.toml: all but the table is comment.
+/// Prints the comparison as a part of a robot.toml: everything except the table is a comment.
 ///
 /// # Errors
 /// Fails if writing fails.

@@ -1,10 +1,10 @@
-//! The lines typed in earlier sessions, in a file of the user's state folder.
+//! The lines typed in earlier sessions, stored in a file in the user's state folder.
 
 use std::path::PathBuf;
 
 use crate::shared::files;
 
-/// `$XDG_STATE_HOME/lizard/history`, by default in ~/.local/state.
+/// The path `$XDG_STATE_HOME/lizard/history`, by default in ~/.local/state.
 fn path() -> Option<PathBuf> {
     let folder = std::env::var_os("XDG_STATE_HOME").map(PathBuf::from);
     let home = || Some(PathBuf::from(std::env::var_os("HOME")?).join(".local/state"));

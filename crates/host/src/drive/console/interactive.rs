@@ -1,4 +1,4 @@
-//! `lizard console`: a dialogue of the user, or of a script on standard input, with the robot.
+//! `lizard console`: a dialogue with the robot, by a user or by a script on standard input.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufWriter, IsTerminal, Write};
@@ -42,7 +42,7 @@ pub struct ConsoleArgs {
 
 type FileRecorder = Recorder<BufWriter<File>>;
 
-/// Time that the loop waits for the robot before it checks the keys.
+/// Longest time that the loop waits for the robot before it checks the keys.
 const TURN: Duration = Duration::from_millis(10);
 /// Interval between attempts to find a vanished port.
 const RETRY: Duration = Duration::from_millis(300);
@@ -50,8 +50,7 @@ const RETRY: Duration = Duration::from_millis(300);
 /// Runs `lizard console`.
 ///
 /// # Errors
-/// Fails if there is no board, the terminal fails, or the file is there already or cannot be
-/// written.
+/// Fails if there is no board, if the terminal fails, or if the file exists already or cannot be written.
 pub fn console(args: ConsoleArgs) -> Result<(), Failure> {
     if let Some(file) = args.record.as_ref().filter(|file| file.exists()) {
         recorder::create(file)?;
@@ -95,15 +94,14 @@ fn dialogue(finder: &BoardFinder, file: Option<PathBuf>) -> Result<(), Failure> 
 /// A session and the file that records it.
 struct Dialogue {
     session: Session,
-    /// The clock of the session, so that a pause of this program is no silence of the robot.
+    /// The clock of the session, so that a pause of this program does not count as silence of the robot.
     clock: Clock,
     recorder: Option<FileRecorder>,
     mark: &'static str,
 }
 
 impl Dialogue {
-    /// Sends the next line and reads the lines that have arrived; `show` receives those for
-    /// the user.
+    /// Sends the next line and reads the lines that have arrived; `show` prints those for the user.
     fn turn(
         &mut self,
         board: &mut Connection,
@@ -112,7 +110,7 @@ impl Dialogue {
         if let Some(line) = self.session.next_line(self.clock.now()) {
             board.link.send(&line)?;
         }
-        // At most 51 lines, since the keys wait meanwhile.
+        // At most 51 lines, since keys are not handled meanwhile.
         for wait in [TURN; 1].into_iter().chain([Duration::ZERO; 50]) {
             let Some(line) = board.link.line(wait)? else {
                 break;
@@ -138,8 +136,8 @@ impl Dialogue {
         }
     }
 
-    /// Sends the lines of standard input. A port that does not reset the board may be a radio's:
-    /// there `deadman` is set as for a person, and stays while the robot walks.
+    /// Sends the lines of standard input. A port whose opening does not reset the board may be a radio link: then
+    /// `deadman` is set as for a person, and stays set while the robot walks.
     fn with_script(
         mut self,
         mut board: Connection,
@@ -232,7 +230,7 @@ impl Dialogue {
             && board.is_some()
             && !finder.is_simulated()
         {
-            // The terminal may be gone; then nobody can read this.
+            // The terminal may be closed; then nobody can read the message.
             let _ = writeln!(io::stdout(), "the robot continues its gait");
         }
         if let Some(recorder) = &mut self.recorder {
@@ -241,7 +239,7 @@ impl Dialogue {
         failed.map_or(Ok(()), Err)
     }
 
-    /// Handles the keys that were pressed; true if the user quits.
+    /// Handles the pressed keys; returns true if the user quits.
     fn handle_keys(&mut self, screen: &mut Screen, prompt: &mut Prompt) -> Result<bool, Failure> {
         if !terminal::is_there() {
             return Ok(true);
@@ -275,7 +273,7 @@ impl Dialogue {
         Ok(false)
     }
 
-    /// Opens the board again, if it is back.
+    /// Opens the board again if it is back.
     fn reopen(
         &mut self,
         finder: &BoardFinder,
@@ -299,7 +297,7 @@ impl Dialogue {
     }
 }
 
-/// The message to the user after the dialogue has failed.
+/// Converts an error of the dialogue into the message for the user.
 fn failure(error: TurnError, board: &Connection) -> Failure {
     match error {
         TurnError::Link(error) => board.failure(&error),
@@ -308,7 +306,7 @@ fn failure(error: TurnError, board: &Connection) -> Failure {
     }
 }
 
-/// The lines of standard input as they arrive; the channel closes at its end.
+/// Reads the lines of standard input as they arrive; the channel closes at the end of the input.
 fn lines_of_stdin() -> Receiver<String> {
     let (send, receive) = mpsc::channel();
     std::thread::spawn(move || {

@@ -1,9 +1,8 @@
-//! A line-based connection to the robot over anything that reads and writes bytes.
+//! A line-based connection to the robot over any stream of bytes.
 //!
-//! The serial line loses nothing, but it does not mark the end of an answer, and a board
-//! may be reset, unplugged or not a lizard at all. So after each line the link waits for
-//! its one `ok` or `err`, and collects the lines that begin with `#` meanwhile. If
-//! nothing comes, it fails with a message.
+//! The serial line loses nothing, but it does not mark the end of an answer. Also, a board may be reset or unplugged,
+//! or may be no robot of this project. So after each line the link waits for the one line that begins with `ok` or
+//! `err`, and collects the lines that begin with `#` until then. If no answer arrives, it fails with a message.
 
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read, Write};
@@ -11,22 +10,21 @@ use std::time::Duration;
 
 use crate::drive::clock::Deadline;
 
-/// The beginning of a robot's first line.
+/// The beginning of the robot's first line after a reset.
 pub const BANNER: &str = "# lizard ";
-/// Questions to a board that was not reset: it finds the port's rate by five lines at most, and
-/// a radio may lose some.
+/// Number of questions to a board that was not reset: the board needs up to five lines to find the port's rate, and a
+/// radio may lose some.
 const MAX_QUESTIONS: u32 = 8;
 
 /// The beginning of an answer to `status`.
 const STATUS: &str = "ok gait=";
-/// Longer lines are cut: the firmware's are shorter, noise may be endless.
+/// Longer lines are cut: the firmware's lines are shorter, but noise may be endless.
 const MAX_LINE_BYTES: usize = 512;
 
 /// Time limits of a connection.
 #[derive(Debug, Clone, Copy)]
 pub struct Timeouts {
-    /// Time for the banner after the port has been opened. A UNO's boot loader takes more than
-    /// a second of it.
+    /// Time for the banner after the port has been opened. A UNO's boot loader needs more than a second of it.
     pub banner: Duration,
     /// Time for an answer. `save` takes the longest, a third of a second.
     pub answer: Duration,
@@ -50,13 +48,13 @@ pub enum LinkError {
     /// A line was not answered.
     #[error("the robot does not answer to `{0}`")]
     Silent(String),
-    /// The first line of a device that is not a lizard.
+    /// The device sends lines, but not those of a lizard; this is its first line.
     #[error(
         "this is not a lizard: it says `{0}`, not `# lizard ...`; is it the right port, and has \
          the board been flashed (lizard flash)?"
     )]
     Stranger(String),
-    /// There is no answer at all.
+    /// There is no answer and no banner at all.
     #[error(
         "nothing answers: no banner and no answer to `status`; is it the right port, and has \
          the board been flashed (lizard flash)?"
@@ -70,7 +68,7 @@ pub enum LinkError {
         /// The code and the reason.
         reason: String,
     },
-    /// The answer has an unknown form.
+    /// The answer has an unknown format.
     #[error("the robot's answer to `{line}` is not understood: `{answer}`")]
     Unclear {
         /// The line that was sent.
@@ -78,7 +76,7 @@ pub enum LinkError {
         /// The answer that was received.
         answer: String,
     },
-    /// The system's own reason.
+    /// An error of the operating system.
     #[error("{0}")]
     Io(io::Error),
 }
@@ -98,13 +96,13 @@ pub struct Reply {
     pub answer: String,
 }
 
-/// A connection. Reading from `port` must end by itself within some milliseconds,
-/// with [`ErrorKind::TimedOut`] if there is nothing.
+/// A connection to a robot. Reading from `port` must end within some milliseconds, with [`ErrorKind::TimedOut`] if
+/// nothing has arrived.
 #[derive(Debug)]
 pub struct Link<P> {
     port: P,
     timeouts: Timeouts,
-    /// The beginning of a line whose end has not come yet.
+    /// The beginning of a line whose end has not arrived yet.
     partial: Vec<u8>,
     lines: VecDeque<String>,
 }
@@ -120,12 +118,11 @@ impl<P: Read + Write> Link<P> {
         }
     }
 
-    /// Waits for the banner and returns it. A board that was not reset when the port
-    /// was opened sends none, so it is asked for its status, until it has found the port's
-    /// rate; then the result is `None`.
+    /// Waits for the banner and returns it. A board that was not reset when the port was opened sends none. So it is
+    /// asked for its status until it has found the port's rate and answers; then the result is `None`.
     ///
     /// # Errors
-    /// Fails if nothing answers, or no lizard does.
+    /// Fails if nothing answers, or something other than a lizard.
     pub fn greet(&mut self) -> Result<Option<String>, LinkError> {
         let mut end = Deadline::after(self.timeouts.banner);
         let mut first = None;
@@ -177,10 +174,10 @@ impl<P: Read + Write> Link<P> {
         Err(LinkError::Silent(line.to_owned()))
     }
 
-    /// Sends a line that must be accepted; returns the `#` lines before the answer.
+    /// Sends a line that must be accepted; returns the answer and the `#` lines before it.
     ///
     /// # Errors
-    /// Fails as [`Link::ask`] does, or if the robot refuses.
+    /// Fails like [`Link::ask`], or if the robot refuses the line.
     pub fn command(&mut self, line: &str) -> Result<Reply, LinkError> {
         let reply = self.ask(line)?;
         let line = line.to_owned();
@@ -195,7 +192,7 @@ impl<P: Read + Write> Link<P> {
         Ok(reply)
     }
 
-    /// Waits for the next line, at most `wait`.
+    /// Waits for the next line, for at most `wait`.
     ///
     /// # Errors
     /// Fails if the port is gone.
@@ -203,7 +200,7 @@ impl<P: Read + Write> Link<P> {
         self.line_before(&mut Deadline::after(wait))
     }
 
-    /// Waits; lines that arrive meanwhile are dropped.
+    /// Waits for `time`, and discards the lines that arrive in it.
     ///
     /// # Errors
     /// Fails if the port is gone.
@@ -252,18 +249,18 @@ impl<P: Read + Write> Link<P> {
         let bytes = std::mem::take(&mut self.partial);
         let text = String::from_utf8_lossy(&bytes);
         let text = text.trim_end_matches('\r');
-        // A reset cuts off the board's current line; the rest is dropped, and the first new line
-        // follows on it.
+        // A reset cuts off the board's current line, and the banner follows directly. The part before the banner is
+        // discarded.
         let text = &text[text.find(BANNER).unwrap_or(0)..];
         if !text.is_empty() {
-            // A terminal obeys control characters: noise must not reach it.
+            // A terminal executes control characters, so they are replaced: noise must not reach it.
             let clean = |c: char| if c.is_control() { '\u{fffd}' } else { c };
             self.lines.push_back(text.chars().map(clean).collect());
         }
     }
 }
 
-/// An error of the system at an open port nearly always means that it is gone.
+/// Converts an error of the system: for an open port, it nearly always means that the port is gone.
 fn to_link_error(error: io::Error) -> LinkError {
     if is_gone(&error) {
         LinkError::Gone
@@ -274,7 +271,7 @@ fn to_link_error(error: io::Error) -> LinkError {
 
 /// True if an error of the system means that the board was unplugged.
 pub(crate) fn is_gone(error: &io::Error) -> bool {
-    // EIO, ENXIO, ENODEV: Linux's errors of a USB port without its board.
+    // EIO, ENXIO, ENODEV: the errors of Linux for a USB port without its board.
     matches!(error.raw_os_error(), Some(5 | 6 | 19))
         || matches!(
             error.kind(),
@@ -290,8 +287,7 @@ pub(crate) fn is_gone(error: &io::Error) -> bool {
 mod tests {
     use super::*;
 
-    /// A port that plays back a script: each write releases the next piece. `None` at the
-    /// end is a port that vanishes.
+    /// A port that plays back a script: each write releases the next piece; at `None` the port vanishes.
     struct Script {
         pieces: VecDeque<Option<&'static str>>,
         ready: VecDeque<u8>,
@@ -333,7 +329,7 @@ mod tests {
                 }
                 return Err(ErrorKind::TimedOut.into());
             }
-            // In small pieces, as a serial port gives them.
+            // Small pieces, as from a serial port.
             let count = into.len().min(3);
             self.ready.read(&mut into[..count])
         }

@@ -1,4 +1,4 @@
-//! Opens a serial port, or explains why it cannot be opened.
+//! Opening a serial port, and the reasons why it may not open.
 
 use std::io;
 use std::path::Path;
@@ -8,9 +8,9 @@ use serialport::{ErrorKind, SerialPort};
 
 use super::find;
 
-/// The console's speed.
+/// Speed of the console, baud.
 pub const BAUD: u32 = 115_200;
-/// Time that a read waits for a byte; a loop over it repeats that often.
+/// Longest time that a read waits for a byte, and the pause of a loop that polls the port.
 const READ_TIMEOUT: Duration = Duration::from_millis(5);
 /// Time that another program may take to close the port.
 const CLOSING_TIME: Duration = Duration::from_secs(1);
@@ -18,7 +18,7 @@ const CLOSING_TIME: Duration = Duration::from_secs(1);
 /// The reason why a port cannot be opened.
 #[derive(Debug, thiserror::Error)]
 pub enum PortError {
-    /// There is no such file.
+    /// The port does not exist.
     #[error("there is no {name}; USB serial ports of this machine: {ports}")]
     Missing {
         /// The port that was asked for.
@@ -26,7 +26,7 @@ pub enum PortError {
         /// The USB serial ports that exist.
         ports: String,
     },
-    /// Another program has it.
+    /// Another program has the port open.
     #[error("{name} is open in {who}; close that program, then try again")]
     Busy {
         /// The port that is busy.
@@ -43,7 +43,7 @@ pub enum PortError {
     /// The file is not a serial port.
     #[error("{0} is not a serial port")]
     NoPort(String),
-    /// The system's own reason.
+    /// Any other error.
     #[error("{name} cannot be opened: {error}")]
     Other {
         /// The port that was asked for.
@@ -66,7 +66,7 @@ impl From<PortError> for crate::Failure {
 /// Opens a port for this program alone. Opening it resets a UNO.
 ///
 /// # Errors
-/// Fails if there is none, or it must not or cannot be opened.
+/// Fails if the port is missing, busy, forbidden or not a serial port.
 pub fn open(name: &str) -> Result<Box<dyn SerialPort>, PortError> {
     if cfg!(unix) && !Path::new(name).exists() {
         return Err(missing_port(name));
@@ -91,14 +91,14 @@ pub fn open(name: &str) -> Result<Box<dyn SerialPort>, PortError> {
     })
 }
 
-/// True if this user may open a port. It is not opened, since that resets a UNO.
+/// True if this user may open a port. Does not open it, since that would reset a UNO.
 #[cfg(target_os = "linux")]
 pub(in crate::drive) fn may_open(name: &str) -> bool {
     use rustix::fs::{Access, access};
     access(name, Access::READ_OK | Access::WRITE_OK).is_ok()
 }
 
-/// True: other systems let every user open a port.
+/// Always true: other systems let every user open a port.
 #[cfg(not(target_os = "linux"))]
 pub(in crate::drive) fn may_open(_: &str) -> bool {
     true
@@ -117,8 +117,8 @@ fn missing_port(name: &str) -> PortError {
     }
 }
 
-/// The program that holds the port open. One that is about to close it, such as a console
-/// that is quitting or a simulated board that clears its line, gets some time to do so.
+/// The program that holds the port open. Waits up to [`CLOSING_TIME`] for a program that is about to close it, such
+/// as a console that is quitting or a simulated board that clears its line.
 fn lasting_holder(name: &str) -> Option<String> {
     let start = Instant::now();
     loop {
@@ -130,8 +130,8 @@ fn lasting_holder(name: &str) -> Option<String> {
     }
 }
 
-/// Another program that has the port open, if the system tells: two programs at one port take
-/// bytes from each other. Processes of other users are not visible.
+/// Another program that has the port open, as far as `/proc` shows: programs that share a port take bytes from each
+/// other. Processes of other users are not visible.
 pub(in crate::drive) fn holder(name: &str) -> Option<String> {
     let port = std::fs::canonicalize(name).ok()?;
     let own_id = std::process::id().to_string();

@@ -5,7 +5,7 @@ use std::sync::Once;
 use std::thread;
 use std::time::Duration;
 
-/// True if the terminal still exists. A terminal that was closed would return keys forever.
+/// True if the terminal still exists. Reading a closed terminal would return keys forever.
 pub fn is_there() -> bool {
     io::stdin().is_terminal()
 }

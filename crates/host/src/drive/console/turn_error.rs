@@ -9,10 +9,10 @@ use crate::Failure;
 #[derive(Debug, thiserror::Error)]
 #[error(transparent)]
 pub enum TurnError {
-    /// The connection to the board.
+    /// The connection to the board failed.
     Link(#[from] LinkError),
-    /// The terminal cannot be read or written.
+    /// The terminal could not be read or written.
     Io(#[from] io::Error),
-    /// The file of the session cannot be written.
+    /// The file of the session could not be written.
     File(#[from] Failure),
 }

@@ -10,9 +10,9 @@ use super::stk500::{Board, Kind};
 
 /// A simulated board: its flash, and the faults to inject.
 pub struct Double {
-    /// All 32 KiB; the boot loader itself is a few bytes at its start here.
+    /// All 32 KiB. Of the boot loader it holds only the first four bytes.
     pub flash: Vec<u8>,
-    /// The kind of boot loader. At another speed it receives nothing.
+    /// The kind of boot loader. It receives nothing at another speed.
     pub kind: Kind,
     /// The chip signature that the loader reports.
     pub signature: [u8; 3],
@@ -26,7 +26,7 @@ pub struct Double {
     pub lost_to: Option<usize>,
     /// The number of the byte from the board that is lost, counted from 0.
     pub lost_from: Option<usize>,
-    /// Bits that are stuck at 0.
+    /// An address in flash, and its bits that are stuck at 0.
     pub worn: Option<(usize, u8)>,
     /// The number of written pages after which the port vanishes.
     pub unplugged_after: Option<usize>,
@@ -187,11 +187,11 @@ impl Read for Double {
             return Err(io::Error::from_raw_os_error(5));
         }
         if self.out.is_empty() {
-            // A port waits for a while, too, and leaves the processor to others.
+            // A real port waits for a while, too, so that other threads can run.
             thread::sleep(Duration::from_micros(200));
             return Err(ErrorKind::TimedOut.into());
         }
-        // In small pieces, as a serial port gives them.
+        // A serial port returns bytes in small pieces.
         let count = bytes.len().min(50);
         self.out.read(&mut bytes[..count])
     }

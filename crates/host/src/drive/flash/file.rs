@@ -13,7 +13,7 @@ use crate::shared::firmware::CODE;
 /// The image of a robot: the code inside this program followed by this robot's section.
 ///
 /// # Errors
-/// Never fails: a test makes one for every built-in robot.
+/// Never fails for a valid robot; a test makes the image of every built-in robot.
 pub fn image(robot: &Robot) -> Result<Image, ImageError> {
     let mut bytes = Image::from_hex(CODE)?.bytes().to_vec();
     bytes.resize(START.into(), BLANK);
@@ -24,15 +24,15 @@ pub fn image(robot: &Robot) -> Result<Image, ImageError> {
 /// A robot's section alone.
 ///
 /// # Errors
-/// Never fails: a section has room.
+/// Never fails: flash has room for any robot's section.
 pub fn robot_alone(robot: &Robot) -> Result<Image, ImageError> {
     Image::robot_alone(robot.section())
 }
 
-/// Reads an image from a file of Intel HEX.
+/// Reads an image from an Intel HEX file.
 ///
 /// # Errors
-/// Fails if it cannot be read, or is not an image for a UNO.
+/// Fails if the file cannot be read, or is not an image for a UNO.
 pub fn read(path: &Path) -> Result<Image, Failure> {
     let name = path.display();
     let text = files::read_text(path)?;

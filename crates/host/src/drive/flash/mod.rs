@@ -1,9 +1,9 @@
-//! `lizard flash`: the firmware into a UNO or a Nano, by the boot loader that each of them has.
+//! `lizard flash`: writes the firmware to a UNO or a Nano through the board's own boot loader.
 //!
-//! The boot loader uses the same USB cable as the console, but it listens only for a second after a
-//! reset, it has no checksums, and a cable pulled in the middle leaves a part of flash wrong. So
-//! what is on the board is read first, only pages that differ are written, all of them are read
-//! back, and the place where the chip starts is written last.
+//! The boot loader uses the same USB cable as the console, but it listens only for a second after a reset, it has
+//! no checksums, and a cable pulled during an upload leaves flash partly written. So the flash is read first, only
+//! pages that differ are written, all of them are read back, and the page at which the program starts is written
+//! last.
 
 mod chip;
 #[cfg(test)]
@@ -65,24 +65,23 @@ pub struct Args {
     robot: RobotFile,
 }
 
-/// A board that was written, under the names of `--json`.
+/// The result of an upload, with the names of `--json`.
 #[derive(Serialize)]
 struct Flashed {
     port: String,
     bytes_written: usize,
-    /// Bytes that were right already.
+    /// Bytes that were already right.
     bytes_kept: usize,
-    /// The firmware's version; null if it answers without its first line.
+    /// The firmware's version; null if the firmware answered without its first line.
     firmware: Option<String>,
     /// Null if the board has no robot.
     robot: Option<info::Robot>,
 }
 
-/// Writes a board.
+/// Runs `lizard flash`.
 ///
 /// # Errors
-/// Fails if there is no image, no board, or none that can be written; the message says what is in
-/// its flash.
+/// Fails if there is no image, no board, or no board that can be written; the message says what is in its flash.
 pub fn run(args: Args) -> Result<(), Failure> {
     let image = match &args.image {
         Some(path) => file::read(path)?,
@@ -122,11 +121,11 @@ pub fn run(args: Args) -> Result<(), Failure> {
     json::print_json_or(args.json, &flashed, || format!("{banner}\n"))
 }
 
-/// The one board of this machine.
+/// Chooses the board to write.
 fn choose(ports: &[UsbPort]) -> Result<UsbPort, Failure> {
     find::choose(ports, "flash").map_err(|error| {
         Failure::Impossible(match error {
-            // Without a simulated one, which others offer.
+            // Other commands suggest a simulated board here.
             FindError::None { .. } => "no board found: this machine has no USB serial port. \
                  Connect the UNO by a cable that carries data (some only charge), or name its \
                  port: lizard flash /dev/ttyACM0"
@@ -136,16 +135,15 @@ fn choose(ports: &[UsbPort]) -> Result<UsbPort, Failure> {
     })
 }
 
-/// True if a port has a USB chip that a Nano may have. Chips of Arduino are on its UNOs alone.
+/// True if the USB chip of a port may be that of a Nano. Only UNOs have Arduino's own USB chips.
 fn may_be_nano(ports: &[UsbPort], name: &str) -> bool {
-    // It may be a link, such as those of /dev/serial/by-id.
+    // The name may be a symbolic link, such as those of /dev/serial/by-id.
     let target = std::fs::canonicalize(name).unwrap_or_else(|_| name.into());
     let port = ports.iter().find(|port| target == Path::new(&port.name));
     port.is_some_and(|port| !port.is_arduinos())
 }
 
-/// Writes the board, with a progress bar and a summary. Returns the board, whose firmware
-/// starts.
+/// Writes the board, with a progress bar and a summary. Returns the board, whose firmware is starting.
 fn write(
     board: SerialBoard,
     image: &Image,
@@ -202,7 +200,7 @@ fn summary(done: Done, time: Duration) -> String {
     }
 }
 
-/// Waits for the firmware's first line.
+/// Waits for the firmware's first line and returns it.
 fn greet(board: SerialBoard) -> Result<String, link::LinkError> {
     let mut link = Link::new(board, link::Timeouts::default());
     let banner = link.greet()?;

@@ -9,10 +9,10 @@ use serialport::SerialPort;
 use super::stk500::Board;
 use crate::drive::console::port::{self, PortError};
 
-/// Time for which the reset line is pulled.
+/// Time of each level of the reset lines, and between closing and reopening a port.
 const RESET_TIME: Duration = Duration::from_millis(50);
 
-/// A port that can be reopened.
+/// A board's serial port, which can be reopened.
 pub struct SerialBoard {
     name: String,
     /// `None` only between closing and reopening.
@@ -25,7 +25,7 @@ impl SerialBoard {
     /// Opens a port for this program alone.
     ///
     /// # Errors
-    /// Fails if there is none, or it cannot be opened.
+    /// Fails if the port does not exist, or cannot be opened.
     pub fn open(name: &str) -> Result<Self, PortError> {
         Ok(Self {
             name: name.to_owned(),
@@ -74,8 +74,8 @@ impl Board for SerialBoard {
         let fresh = std::mem::take(&mut self.is_fresh);
         match self.toggle_reset() {
             Ok(()) => {}
-            // The pseudo terminal of a simulated board has no such lines, but opening it resets
-            // that board. A port that is gone has none either; it will not open.
+            // The pseudo terminal of a simulated board has no reset lines, but opening it resets that board. A port
+            // that has vanished fails here as well, and again when the speed is set.
             Err(_) if fresh => {}
             Err(_) => self.open_again()?,
         }

@@ -2,16 +2,13 @@
 //!
 //! After a reset by its button or by USB's DTR line, the chip starts in the boot loader. It
 //! blinks, then listens for about a second, and starts the program in flash if nobody calls.
-//! One or a few bytes that it does not understand make it start that program at once; then only
-//! another reset starts the boot loader again. Commands and answers have no checksums: what was
-//! written must be read back.
+//! One or a few bytes that it does not understand make it start that program at once; then only another reset
+//! starts the boot loader again. Commands and answers have no checksums, so written pages must be read back.
 //!
-//! There are two of them, and which one a board has shows only in the speed at which it answers:
-//! see [`Kind`].
+//! There are two such boot loaders. Only the speed at which a board answers shows which one it has: see [`Kind`].
 //!
-//! Sources: Atmel application note AVR061 for the commands; optiboot.c, version 4.4, as UNOs
-//! have it, and ATmegaBOOT_168.c, as Nanos had it until 2018, for the times and for what they
-//! leave out.
+//! Sources: Atmel application note AVR061 for the commands; optiboot.c, version 4.4, the UNO's loader, and
+//! ATmegaBOOT_168.c, the Nano's until 2018, for the times and for the features that they leave out.
 
 use std::io::{self, ErrorKind, Read, Write};
 use std::time::Duration;
@@ -29,7 +26,7 @@ const LOAD_ADDRESS: u8 = 0x55;
 const PROGRAM_PAGE: u8 = 0x64;
 const READ_PAGE: u8 = 0x74;
 const READ_SIGNATURE: u8 = 0x75;
-/// The memory that a page is of.
+/// The memory type in commands that read or write a page.
 const FLASH: u8 = b'F';
 /// The number of calls to the loader after one reset.
 const CALLS: usize = 5;
@@ -39,8 +36,8 @@ const CALLS: usize = 5;
 pub enum Kind {
     /// The boot loader of UNOs, and of Nanos since 2018.
     Optiboot,
-    /// The boot loader of older Nanos and of many copies of them. It does not start the program
-    /// when it is told to leave, but a second and a half after the last byte.
+    /// The boot loader of older Nanos and of many copies of them. It starts the program 1.5 s after the last byte,
+    /// even if it is told to leave.
     AtmegaBoot,
 }
 
@@ -62,8 +59,8 @@ impl Kind {
     }
 }
 
-/// A connection to a board. Reading must end by itself within some milliseconds, with
-/// [`ErrorKind::TimedOut`] if there is nothing.
+/// A connection to a board. A read must return within some milliseconds, with [`ErrorKind::TimedOut`] if nothing
+/// has arrived.
 pub trait Board: Read + Write {
     /// Resets the chip, which starts its boot loader, and sets the speed of the line.
     ///
@@ -75,12 +72,12 @@ pub trait Board: Read + Write {
 /// Time limits for answers of a boot loader.
 #[derive(Debug, Clone, Copy)]
 pub struct Timeouts {
-    /// After a reset: the loader blinks and does not listen. Bytes sent meanwhile overflow its
+    /// Time after a reset in which the loader blinks and does not listen. Bytes sent meanwhile overflow its
     /// receiver, and half a command makes it give up.
     pub blinks: Duration,
     /// Time for the answer to one call.
     pub call: Duration,
-    /// Time after the first answer, for late answers to earlier calls.
+    /// Time after the first answer in which late answers to earlier calls are discarded.
     pub quiet: Duration,
     /// Time for an answer to any other command. Writing a page takes about 20 ms, but a busy
     /// machine may pass the bytes on a second later.
@@ -104,13 +101,13 @@ pub enum LoaderError {
     /// No answer, or a part of one.
     #[error("the board does not answer")]
     Silent,
-    /// An answer of another form.
+    /// An answer of the wrong form.
     #[error("the board's answers are garbled")]
     OutOfStep,
     /// The port has vanished.
     #[error("the port is gone: the board was unplugged, or its cable is loose")]
     Gone,
-    /// The system's own reason.
+    /// Any other error.
     #[error("{0}")]
     Io(io::Error),
 }
@@ -125,7 +122,7 @@ impl LoaderError {
 impl From<io::Error> for LoaderError {
     fn from(error: io::Error) -> Self {
         match error.kind() {
-            // A command that could not be sent has no answer.
+            // A command that could not be sent gets no answer.
             ErrorKind::TimedOut => Self::Silent,
             _ if is_gone(&error) => Self::Gone,
             _ => Self::Io(error),
@@ -133,7 +130,7 @@ impl From<io::Error> for LoaderError {
     }
 }
 
-/// A board whose boot loader is talked to.
+/// A client of a board's boot loader.
 #[derive(Debug)]
 pub struct Loader<B> {
     board: B,
@@ -141,12 +138,12 @@ pub struct Loader<B> {
 }
 
 impl<B: Board> Loader<B> {
-    /// Makes a loader; nothing is sent before [`Loader::call`].
+    /// Creates a client; nothing is sent before [`Loader::call`].
     pub fn new(board: B, timeouts: Timeouts) -> Self {
         Self { board, timeouts }
     }
 
-    /// Returns the connection, with all bytes that were not read.
+    /// Returns the connection; bytes that were not read stay in it.
     pub fn into_board(self) -> B {
         self.board
     }
@@ -154,10 +151,10 @@ impl<B: Board> Loader<B> {
     /// Resets the board and calls a boot loader of this kind until it answers.
     ///
     /// # Errors
-    /// Returns [`LoaderError::Silent`] if it never does.
+    /// Returns [`LoaderError::Silent`] if no loader answers.
     pub fn call(&mut self, kind: Kind) -> Result<(), LoaderError> {
         self.board.reset(kind.baud())?;
-        // What the program said before the reset comes meanwhile, too.
+        // Output of the program from before the reset arrives in this time, too.
         self.skip(self.timeouts.blinks)?;
         for _ in 0..CALLS {
             self.board.write_all(&[GET_SYNC, END])?;
@@ -207,7 +204,7 @@ impl<B: Board> Loader<B> {
         self.command(&[LEAVE], &mut [])
     }
 
-    /// Sets the address of the next page. It is sent in words of two bytes.
+    /// Sets the address of the next page. The protocol counts it in words of two bytes.
     fn go_to(&mut self, address: usize) -> Result<(), LoaderError> {
         let [low, high] = ((address / 2) as u16).to_le_bytes();
         self.command(&[LOAD_ADDRESS, low, high], &mut [])
@@ -226,7 +223,7 @@ impl<B: Board> Loader<B> {
         Ok(())
     }
 
-    /// Searches for [`IN_SYNC`] and [`OK`] after any other bytes.
+    /// Searches for [`IN_SYNC`] followed by [`OK`], after any other bytes.
     fn finds_answer(&mut self, time: Duration) -> Result<bool, LoaderError> {
         let mut end = Deadline::after(time);
         let mut last = 0;
@@ -239,14 +236,14 @@ impl<B: Board> Loader<B> {
                 return Ok(true);
             }
             last = byte;
-            // A board that never stops talking would block this loop.
+            // A board that never stops sending would block this loop.
             if end.has_passed() {
                 return Ok(false);
             }
         }
     }
 
-    /// Waits, and drops all bytes received meanwhile.
+    /// Waits, and discards all bytes received meanwhile.
     fn skip(&mut self, time: Duration) -> Result<(), LoaderError> {
         let mut end = Deadline::after(time);
         let mut bytes = [0; 256];

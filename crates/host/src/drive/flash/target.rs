@@ -1,10 +1,10 @@
-//! The model of the board, and the part of flash that it leaves for an image.
+//! The model of a board, and the part of flash that is free for an image.
 //!
-//! An Arduino Nano has the UNO's chip and runs the UNO's firmware, but it starts 1.5 KB
-//! earlier: its boot section has 2 KB (Arduino's boards.txt: high fuse 0xDA), a UNO's has 512
-//! bytes. Code written into that section would be started as if it were a boot loader, and only
-//! a programmer at the pins could repair that. No boot loader reports its fuses. An old Nano is
-//! recognised by its speed; a newer one talks like a UNO, and only its USB chip may tell.
+//! An Arduino Nano has the UNO's chip and runs the UNO's firmware, but its boot section has 2 KB (Arduino's
+//! boards.txt: high fuse 0xDA), a UNO's 512 bytes, and the chip starts at the first byte of that section. Code
+//! written into it would be started as if it were a boot loader, and only a programmer at the pins could repair
+//! that. No boot loader reports its fuses. An old Nano is recognised by its speed; a newer one talks like a UNO,
+//! and only its USB chip may tell.
 
 use super::image::{BOOT, Image, NANO_BOOT};
 use super::stk500::Kind;
@@ -27,7 +27,7 @@ pub struct Target {
     pub may_be_nano: bool,
 }
 
-/// An image that reaches into the boot section of a Nano, or of a board that may be one.
+/// The error for an image that reaches into the boot section of a Nano, or of a board that may be one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("{} bytes of flash are needed, and a Nano has {NANO_BOOT} before its boot section{}. \
          Nothing was written", .end, if *.in_doubt {
@@ -38,7 +38,7 @@ pub struct Target {
 pub struct TooLong {
     /// The address after the image's last byte.
     end: usize,
-    /// The board may also be a UNO.
+    /// True if the board may also be a UNO.
     in_doubt: bool,
 }
 
@@ -51,10 +51,10 @@ impl Target {
         }
     }
 
-    /// Checks that an image leaves the boot section alone, now that this loader has answered.
+    /// Checks that an image does not reach into the boot section of a board whose loader of this kind has answered.
     ///
     /// # Errors
-    /// Fails if the board has no room, or may have none.
+    /// Fails if the board has too little room, or may have too little.
     pub fn has_room(self, image: &Image, loader: Kind) -> Result<(), TooLong> {
         let is_nano = self.model == Some(Model::Nano) || loader == Kind::AtmegaBoot;
         let in_doubt = !is_nano && self.model.is_none() && self.may_be_nano;

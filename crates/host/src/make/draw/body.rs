@@ -1,7 +1,7 @@
-//! Plate and legs from above, as they are built; every drawing of the robot has them.
+//! The plate and the legs from above, as built; every drawing of the robot contains them.
 //!
-//! Drawn from below: feet with the leaves that carry them, couplers, the plate, cranks
-//! and followers, struts. Bars are thinner than the parts, so that joints are seen.
+//! The parts are drawn from the lowest to the highest: feet with the leaves that carry them, couplers, the plate,
+//! cranks and followers, struts. Bars are thinner than the real parts, so that joints stay visible.
 
 use lizard_kinematics::Vector;
 use lizard_robot::{LegPlace, Plate};
@@ -21,24 +21,24 @@ const RIM: f64 = 0.6;
 pub struct Sheet<At> {
     /// The projection from mm in the chassis frame to the page.
     pub at: At,
-    /// The length of a mm on the page.
+    /// The length of 1 mm on the page.
     pub scale: f64,
     /// The robot's turn on the page, deg counter-clockwise.
     pub turn: f64,
 }
 
 impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
-    /// A bar this many mm wide.
+    /// A bar of this width in mm.
     pub fn bar(&self, from: Vector, to: Vector, colour: &str, mm: f64) -> Line {
         line((self.at)(from), (self.at)(to), colour, mm * self.scale)
     }
 
-    /// A joint this many mm large.
+    /// A joint of this radius in mm.
     pub fn joint(&self, point: Vector, mm: f64) -> Circle {
         self.disc(point, mm, "white")
     }
 
-    /// A disc with an edge.
+    /// A disc of this radius in mm, with an edge.
     pub fn disc(&self, point: Vector, mm: f64, fill: &str) -> Circle {
         edged(
             circle((self.at)(point), mm * self.scale, fill),
@@ -47,7 +47,7 @@ impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
         )
     }
 
-    /// A rectangle about a middle.
+    /// A rectangle by its centre, half its size and the radius of its corners, mm; it turns with the robot.
     fn rectangle(&self, middle: Vector, half: Vector, corner: f64, fill: &str) -> Group {
         let (x, y) = (self.at)(middle);
         let [wide, long] = [half.x, half.y].map(|half| half * self.scale);
@@ -63,7 +63,7 @@ impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
         }
     }
 
-    /// The legs' parts that lie next to the plate and under it; the feet in these colours.
+    /// The parts of the legs beside the plate and below it; `pads` are the colours of the feet.
     pub fn feet(&self, mut group: Group, legs: &[LegPlace; 4], pads: [&str; 4]) -> Group {
         for (i, leg) in legs.iter().enumerate() {
             let [driven, idle] = leg.joints;
@@ -92,7 +92,7 @@ impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
         group
     }
 
-    /// The legs' parts above the plate, and the arms of the servos' links that hold them.
+    /// The parts of the legs above the plate, and the arms of the servos' links that hold their struts.
     pub fn cranks(&self, mut group: Group, shafts: [Vector; 4], legs: &[LegPlace; 4]) -> Group {
         for (i, leg) in legs.iter().enumerate() {
             let [link, crank] = leg.strut;
@@ -111,7 +111,7 @@ impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
         group
     }
 
-    /// The screws that hold the struts at the servos' links, which lie above all of that.
+    /// The screws that hold the struts to the servos' links. They lie above all other parts.
     pub fn anchors(&self, group: Group, legs: &[LegPlace; 4]) -> Group {
         let screws = legs.iter().map(|leg| self.joint(leg.strut[0], 1.2));
         screws.fold(group, Group::add)

@@ -1,5 +1,5 @@
-//! `lizard draw --horns`: the angles at which the cranks are pressed on, and the error
-//! that a trim corrects, because the shaft has teeth.
+//! `lizard draw --horns`: the angles at which to press the cranks onto the shafts, and the error that a trim
+//! corrects, because a crank fits only on the teeth of its shaft.
 
 use lizard_kinematics::{Vector, sin_cos};
 use lizard_robot::Robot;
@@ -13,7 +13,7 @@ use crate::shared::ink::{
 
 const SIZE: (f64, f64) = (700.0, 640.0);
 
-/// The middle of the robot, and the room for it.
+/// The centre of the robot on the page, and the size of the area for it.
 const MIDDLE: (f64, f64) = (196.0, 320.0);
 const ROOM: (f64, f64) = (250.0, 476.0);
 
@@ -21,15 +21,15 @@ const ROOM: (f64, f64) = (250.0, 476.0);
 const TEETH: usize = 25;
 const TOOTH: f64 = 360.0 / TEETH as f64;
 
-/// The spline, enlarged: its middle, its radius between the teeth and at their tips.
+/// The enlarged spline: its centre, and its radii between the teeth and at their tips.
 const SPLINE: (f64, f64) = (558.0, 158.0);
 const RADII: (f64, f64) = (52.0, 62.0);
 const CRANK: f64 = 150.0;
 
-/// The error of the example: its crank is placed this many degrees clockwise of its angle.
+/// The error in the example: the crank sits this many degrees clockwise of its correct angle.
 const EXAMPLE: f64 = 6.0;
 
-/// An SG-90 from above, mm: its width, its length, its shaft from one end.
+/// An SG-90 from above, mm: its width and length, and the distance of its shaft from one end.
 const BODY: (f64, f64) = (12.2, 22.8);
 const SHAFT: f64 = 6.0;
 
@@ -43,7 +43,7 @@ pub fn horns(robot: &Robot) -> String {
     page(SIZE, group)
 }
 
-/// The cranks from their shafts to the joints with the couplers, mm, chassis frame.
+/// The ends of the cranks, mm in the chassis frame: the shaft, and the joint with the coupler.
 fn cranks(robot: &Robot) -> [(Vector, Vector); 4] {
     let links = robot.lizard().links;
     let lengths = [links.l1, links.l4, links.l9, links.l6];
@@ -55,7 +55,7 @@ fn cranks(robot: &Robot) -> [(Vector, Vector); 4] {
     })
 }
 
-/// Pixels for a millimetre, so that the robot fits.
+/// Pixels per millimetre at which the robot fits.
 fn scale(robot: &Robot) -> f64 {
     let (mut x, mut y) = (0.0f64, 0.0f64);
     for (shaft, tip) in cranks(robot) {
@@ -69,13 +69,13 @@ fn on_page(point: Vector, scale: f64) -> (f64, f64) {
     (MIDDLE.0 + scale * point.x, MIDDLE.1 - scale * point.y)
 }
 
-/// The point at a distance from another in some direction, on the page.
+/// The point on the page at a distance and in a direction from another.
 fn point_toward(from: (f64, f64), degrees: f64, distance: f64) -> (f64, f64) {
     let (sin, cos) = sin_cos(degrees);
     (from.0 + distance * cos, from.1 - distance * sin)
 }
 
-/// Part of a circle, counter-clockwise.
+/// An arc of a circle; angles count counter-clockwise.
 fn arc(middle: (f64, f64), radius: f64, from: f64, to: f64, colour: &str) -> Polyline {
     const STEPS: usize = 40;
     let points: Vec<(f64, f64)> = (0..=STEPS)
@@ -209,7 +209,7 @@ fn example(robot: &Robot) -> Group {
             point_toward(SPLINE, exact + 4.0, CRANK + 16.0),
             14.0,
         ))
-        // A tooth's width on the other side, where nothing else is.
+        // The width of a tooth, marked on the side that is free.
         .add(tooth(placed - 9.0 * TOOTH));
     for (index, words) in lines.iter().enumerate() {
         let point = (LEFT, SPLINE.1 + 102.0 + 19.0 * index as f64);
@@ -241,7 +241,7 @@ fn spline(degrees: f64) -> Polygon {
         .set("stroke-width", 1.5)
 }
 
-/// The distance from the tooth in this direction to the next.
+/// A mark for the angle from the tooth in this direction to the next.
 fn tooth(degrees: f64) -> Group {
     let (near, far) = (RADII.1 + 3.0, RADII.1 + 26.0);
     let ray = |degrees| {
@@ -264,7 +264,7 @@ fn tooth(degrees: f64) -> Group {
         ))
 }
 
-/// A compass rose that shows how angles are counted.
+/// A compass rose that shows from where and in which direction angles are measured.
 fn rose() -> Group {
     let middle = (546.0, 540.0);
     let caption = (middle.0, middle.1 - 84.0);

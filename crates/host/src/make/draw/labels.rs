@@ -9,11 +9,11 @@ use crate::shared::ink::{
     Anchor, DARK, GREY, SERVO, line, pin_name, text, text_middle, text_start,
 };
 
-/// Distance of the servos' names from the page's middle, to the side and up, pixels.
+/// Distance of the servos' names from the middle of the page, sideways and vertically, pixels.
 const NAMES_AT: f64 = 347.0;
 
 impl View<'_> {
-    /// Names, angles and measures.
+    /// Adds names, angles and dimensions.
     pub(super) fn labels(&self, mut group: Group) -> Group {
         let angles = self.angles();
         for servo in 0..4 {
@@ -95,7 +95,7 @@ impl View<'_> {
     }
 }
 
-/// The axes of the chassis frame and a scale.
+/// The axes of the chassis frame, and a scale bar.
 fn draw_compass(mut group: Group, scale: f64) -> Group {
     let origin = (50.0, SIZE.1 - 50.0);
     for (degrees, name) in [(0.0, "x, right"), (90.0, "y, forward")] {

@@ -1,4 +1,4 @@
-//! `lizard draw`: the robot from above, its wiring, and how its cranks are fitted.
+//! `lizard draw`: the robot from above, its wiring, and the angles at which its cranks are fitted.
 
 pub mod body;
 mod horns;

@@ -1,4 +1,4 @@
-//! An Arduino UNO from above, its pins where the board has them.
+//! An Arduino UNO from above, with its pins where the board has them.
 
 use svg::node::element::{Group, Text};
 
@@ -36,12 +36,12 @@ pub struct Uno {
 }
 
 impl Uno {
-    /// The right and the lower edge.
+    /// The lower right corner.
     pub fn far_corner(&self) -> (f64, f64) {
         self.at(BOARD.0, 0.0)
     }
 
-    /// A pin by its Arduino number, 0 to 19; 14 to 19 are A0 to A5.
+    /// Position of a pin by its Arduino number, 0 to 19; 14 to 19 are A0 to A5.
     pub fn pin(&self, number: u8) -> (f64, f64) {
         let n = f64::from(number);
         match number {
@@ -51,17 +51,17 @@ impl Uno {
         }
     }
 
-    /// The ground pin beside D13.
+    /// Position of the ground pin beside D13.
     pub fn ground(&self) -> (f64, f64) {
         self.at(D13 - 1.0, UPPER_ROW)
     }
 
-    /// The 5V pin.
+    /// Position of the 5V pin.
     pub fn five_volts(&self) -> (f64, f64) {
         self.at(POWER.0 + 3.0, LOWER_ROW)
     }
 
-    /// The board; the pins of `used` stand out.
+    /// The board, with the pins of `used` emphasised.
     pub fn draw(&self, used: &[u8]) -> Group {
         let size = (BOARD.0 * PITCH, BOARD.1 * PITCH);
         let mut group = Group::new().add(edged(
@@ -117,7 +117,7 @@ impl Uno {
             .add(text_start("LED", (led.0 + 9.0, led.1 + 5.0), 13.0))
     }
 
-    /// The name printed beside a pin, upwards.
+    /// The name printed beside a pin, rotated to read upwards.
     fn label(&self, pin: (f64, f64), name: &str, is_used: bool) -> Text {
         let upper = pin.1 < self.corner.1 + BOARD.1 * PITCH / 2.0;
         let (y, anchor) = if upper {

@@ -1,4 +1,4 @@
-//! `--long-foot`: a foot that is not as long as it should be.
+//! `--long-foot`: a foot of the wrong length.
 
 use std::str::FromStr;
 
@@ -6,10 +6,10 @@ use lizard_robot::servo::LEGS;
 
 use crate::Failure;
 
-/// The largest length error of a foot, mm; beyond it, its screw or its leaf ends.
+/// Largest length error of a foot, mm; a larger one exceeds its screw or its leaf.
 const MAX_FOOT_ERROR_MM: f64 = 5.0;
 
-/// A foot that is not as long as it should be.
+/// A leg whose foot has the wrong length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LongFoot {
     leg: usize,

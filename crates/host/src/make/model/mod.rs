@@ -1,4 +1,4 @@
-//! `lizard model`: the robot for physics engines and for ROS, which others wrote.
+//! `lizard model`: writes the robot for existing physics engines and for ROS.
 
 mod format;
 mod long_foot;
@@ -60,8 +60,8 @@ pub struct Args {
 /// Makes the model and writes it.
 ///
 /// # Errors
-/// Fails for a wrong robot.toml, a robot that cannot be built, another ending, no such gait, no
-/// firmware or another robot's, a file that cannot be written.
+/// Fails for a wrong robot.toml, a robot that cannot be built, an unknown file extension or gait, a firmware that
+/// is missing or has another robot, or a file that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let format = Format::of(&args.file)?;
     check_options(&args, format)?;
@@ -90,7 +90,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         Format::Urdf => pieces.urdf(&neutral, &scene, &address),
         Format::Sdf => pieces.sdf(&neutral, &scene, &address),
     };
-    // Else the meshes alone would be left.
+    // Checked before the meshes are written: otherwise a failure would leave them without a model.
     files::check_replaceable(&args.file)?;
     let mut also = String::new();
     if let Some(course) = &scene.course {
@@ -105,7 +105,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         also = format!(", and {} meshes in {}", meshes.len(), folder.display());
     }
     files::write(&args.file, text.as_bytes())?;
-    // A stream, such as /dev/stdout, gets nothing else.
+    // If the file is a stream, such as /dev/stdout, it gets nothing else.
     if !args.file.is_file() {
         return Ok(());
     }
@@ -114,7 +114,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     Ok(out.flush()?)
 }
 
-/// Refuses options that the format has no use for.
+/// Refuses options that the format cannot use.
 fn check_options(args: &Args, format: Format) -> Result<(), Failure> {
     let wrong = match (format, &args.drive, &args.mesh_address) {
         (Format::Mjcf, _, Some(_)) => {
@@ -128,7 +128,7 @@ fn check_options(args: &Args, format: Format) -> Result<(), Failure> {
     Err(Failure::Input(wrong.to_owned()))
 }
 
-/// The angles for --drive, if given.
+/// The servo angles for `--drive`, if given.
 #[cfg(feature = "simulator")]
 fn course(args: &Args, robot: &Robot) -> Result<Option<Course>, Failure> {
     let drive = args.drive.as_deref();

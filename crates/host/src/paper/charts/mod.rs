@@ -1,4 +1,4 @@
-//! `lizard draw charts`: the paper's figures, and those that it lacks, as SVG.
+//! `lizard draw charts`: the paper's figures, and charts that it lacks, as SVG.
 
 mod performance;
 mod reach;
@@ -18,7 +18,7 @@ use crate::shared::progress::bar;
 use crate::shared::{files, json};
 use crate::{Failure, PoseArgs, RobotFile};
 
-/// Grid of the performance charts, and rings of their circles.
+/// Step of the grid of the performance charts, and number of rings at which a circle is sampled.
 const STEP: f64 = 0.005;
 const RINGS: usize = 16;
 
@@ -58,7 +58,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let pose = args.pose.get().unwrap_or_else(|| robot.neutral());
     let solution = robot.lizard().solve(&pose)?;
-    // Before anything is computed, which takes seconds.
+    // Created before the charts are computed, which takes seconds, so that a bad folder fails at once.
     fs::create_dir_all(&args.folder).map_err(|error| files::write_failure(&args.folder, &error))?;
     let mut pictures = charts(&robot);
     pictures.push(("top-view", draw::top_view(&robot, &solution, true)));

@@ -55,7 +55,7 @@ pub fn performance(points: &[Point], step: f64) -> String {
             colours: VIRIDIS,
         };
         let count = (SUM / step).round() as usize;
-        // Cells are centred on the grid's points.
+        // Cells are centred on the grid points.
         let wide = Plot {
             corner: plot.at(-step / 2.0, SUM + step / 2.0),
             size: (PANEL * (SUM + step) / SUM, PANEL * (SUM + step) / SUM),

@@ -1,8 +1,8 @@
 //! The chart of the points that tail, body and legs reach, as seen from above.
 //!
-//! The paper draws the workspace of the head and says that those of tail, body and legs can
-//! be plotted likewise. The tail's is the head's, mirrored. A slider has no end point of its
-//! own, so its middle stands for it. A foot has one freedom, so its workspace is an arc.
+//! The paper draws the workspace of the head and says that those of tail, body and legs can be plotted likewise.
+//! The tail's workspace is that of the head, mirrored. A slider has no end point of its own, so its middle is
+//! plotted. A foot has one degree of freedom, so its workspace is an arc.
 
 use std::collections::HashSet;
 
@@ -21,14 +21,14 @@ const AXES: [Axis<'static>; 2] = [
 /// Half the width of the drawn square, and the width of its cells, mm.
 const REACH: f64 = 160.0;
 const CELL: f64 = 2.0;
-/// Range of the tried servo angles to either side of neutral, deg.
+/// Range of the servo angles that are tried to either side of neutral, deg.
 const RANGE: i32 = 80;
 /// Colours of the areas that the linkage allows and that the guard accepts.
 const TAIL: [&str; 2] = ["#cfe3f1", "#4a9bd0"];
 const SLIDERS: [&str; 2] = ["#f9e0cc", "#e08a4a"];
 const LEGS: &str = "#117733";
 
-/// Cells of the plane.
+/// Indices of cells of the drawn square.
 type Cells = HashSet<(i32, i32)>;
 
 fn cell(point: Vector) -> (i32, i32) {
@@ -122,7 +122,7 @@ fn draw_legend(mut group: Group) -> Group {
         .add(text_start("shaft of a servo", (left + 44.0, 305.0), 15.0))
 }
 
-/// The angles of neutral with some servos turned.
+/// The neutral servo angles plus these turns, deg.
 fn turned_angles(robot: &Robot, turns: [f64; 4]) -> [f64; 4] {
     let neutral: [f64; 4] = robot.neutral().into();
     std::array::from_fn(|servo| neutral[servo] + turns[servo])
@@ -142,7 +142,7 @@ fn accepted_tail(robot: &Robot) -> Cells {
     poses.iter().map(|pose| cell(pose.tail_point())).collect()
 }
 
-/// The middles of the sliders with both sides mirrored, so that head and tail accept the most.
+/// The middles of both sliders in mirror-symmetric poses, for which the guard of head and tail accepts the most.
 fn accepted_sliders(robot: &Robot) -> Cells {
     let poses = accepted_solutions(robot, |a, b| [a, -a, -b, b]);
     let points = poses.iter().flat_map(|pose| {
@@ -157,12 +157,12 @@ fn accepted_sliders(robot: &Robot) -> Cells {
     points.map(cell).collect()
 }
 
-/// The middle of a slider by the tips of its arms, which count from its rear shaft.
+/// The middle of a slider, from the tips of its arms relative to its rear shaft.
 fn middle(robot: &Robot, side: Side, rear: Vector, front: Vector) -> Vector {
     robot.lizard().shafts()[side.servos()[1]] + (rear + front) * 0.5
 }
 
-/// The middles of both sliders for every turn of their arms within the stroke.
+/// The middles of both sliders for all angles of their arms at which the travel is within the stroke.
 fn linkage_sliders(robot: &Robot) -> Cells {
     let limits = robot.limits();
     let mut cells = Cells::new();
@@ -181,7 +181,7 @@ fn linkage_sliders(robot: &Robot) -> Cells {
     cells
 }
 
-/// True if both arms of the tail reach a point of the chassis frame behind its base.
+/// True if a point of the chassis frame is behind the tail's base and both arms reach it.
 fn is_in_tail(robot: &Robot, point: Vector) -> bool {
     let [left, right] = End::Tail.servos();
     let shafts = robot.lizard().shafts();
@@ -190,7 +190,7 @@ fn is_in_tail(robot: &Robot, point: Vector) -> bool {
     local.y >= 0.0 && Workspace::of(&robot.lizard().end(End::Tail)).contains(local)
 }
 
-/// The places of a foot while its servo turns from neutral and no other does.
+/// The positions of a foot while only its servo turns from neutral. If guarded, only those that the guard accepts.
 fn foot_places(
     robot: &Robot,
     servo: usize,
@@ -249,7 +249,7 @@ mod tests {
     #[test]
     fn areas_are_those_of_geometry() {
         let robot = paper();
-        // The tail's upper half: the same area as that of the head in `lizard design`.
+        // The half behind the tail's base has the same area as the head's upper half in `lizard design`.
         let step = |i: i32| f64::from(i) - 160.5;
         let all = (0..321).flat_map(|i| (0..321).map(move |j| Vector::new(step(i), step(j))));
         let area = all.filter(|at| is_in_tail(&robot, *at)).count() as f64;

@@ -1,4 +1,4 @@
-//! The chart of the points that the head can reach, and of how well the servos steer it there.
+//! Charts of the points that the head can reach, and of the conditioning there.
 
 use lizard_kinematics::{Circle, End, Vector, Workspace};
 use lizard_robot::Robot;
@@ -75,7 +75,7 @@ pub fn workspace(robot: &Robot) -> String {
     page(SIZE, group)
 }
 
-/// The local conditioning index over the upper workspace, outward elbows.
+/// The local conditioning index over the upper workspace, with outward elbows.
 pub fn conditioning(robot: &Robot) -> String {
     let bars = robot.lizard().end(End::Head);
     let space = Workspace::of(&bars);
@@ -140,7 +140,7 @@ pub fn conditioning(robot: &Robot) -> String {
     page((SIZE.0, 720.0), group)
 }
 
-/// A circle of the plot.
+/// A circle in the plot.
 fn ring(plot: &Plot, centre: Vector, radius: f64, colour: &str, width: f64) -> Ring {
     edged(
         circle(plot.at(centre.x, centre.y), radius * plot.scale(), "none"),

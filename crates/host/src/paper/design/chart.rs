@@ -18,8 +18,7 @@ pub struct Point {
     pub performance: Performance,
 }
 
-/// The charts on a grid of this step, computed on all cores; always the same
-/// numbers in the same order.
+/// Computes the charts on a grid of this step, on all cores. The numbers and their order are the same in every run.
 pub fn chart(step: f64, rings: usize, progress: &ProgressBar) -> Vec<Point> {
     let points = triangle(step);
     progress.set_length(points.len() as u64);

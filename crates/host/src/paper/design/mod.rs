@@ -22,9 +22,9 @@ pub use performance::{CLAIM, Conditioning, Performance, lci};
 pub use proportions::{Proportions, SUM, triangle};
 pub use search::{Demands, Design, Search, design, ranked};
 
-/// Rings across the inscribed circle for one design, and for each of many.
+/// Number of rings at which the inscribed circle of a single design is sampled.
 const FINE: usize = 128;
-/// Points across the grid of a coarse chart; see `FINE`.
+/// Number of rings at which the circles of many designs are sampled; see `FINE`.
 pub const COARSE: usize = 32;
 
 /// Dimensional synthesis of the head and tail five-bar.
@@ -242,7 +242,7 @@ lg1, lg13               {:8.2}   robot.toml; the paper gives no rule
     }
 }
 
-/// The regions where "LCI > 0.7" holds, in words.
+/// A line on where the paper's claim "LCI > 0.7" holds.
 fn verdict(lci: &Conditioning, r_mic: f64) -> String {
     let mean = if lci.mean > CLAIM { "holds" } else { "fails" };
     let bound = if lci.least > CLAIM { "holds" } else { "fails" };
@@ -363,7 +363,7 @@ fn print_ranking(
             given.r1, given.r2, given.r3
         )?,
         Some(mut ours) => {
-            // Scored against the best of the list, as its members are.
+            // Its score refers to the best of the list, as theirs do.
             let best =
                 |value: fn(&Design) -> f64| designs.iter().map(value).fold(value(&ours), f64::max);
             let (lci, margin, stride) = (best(|d| d.lci), best(|d| d.margin), best(|d| d.stride));

@@ -7,7 +7,7 @@ use serde::Serialize;
 /// The bound that the paper claims for the local conditioning index.
 pub const CLAIM: f64 = 0.7;
 
-/// A design's figures, for lengths in any one unit.
+/// The performance of a design, in the unit of its lengths.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Performance {
     /// Area of the theoretical workspace, both halves.
@@ -25,7 +25,7 @@ pub struct Performance {
 pub struct Conditioning {
     /// Mean over the area (the global conditioning index).
     pub mean: f64,
-    /// Least, on the rim: 0 where the circle touches the workspace's edge.
+    /// The least value, on the rim: 0 where the circle touches the workspace's edge.
     pub least: f64,
     /// The largest value.
     pub most: f64,
@@ -35,8 +35,8 @@ pub struct Conditioning {
     pub radius_above: f64,
 }
 
-/// The local conditioning index with the end point at a point and outward elbows; 0
-/// where the point is on the rim or out of reach.
+/// The local conditioning index with the end point at `point` and outward elbows; 0 on the rim of the workspace and
+/// outside it.
 pub fn lci(bars: &FiveBar, point: Vector) -> f64 {
     bars.reach(point).map_or(0.0, |pose| pose.lci())
 }
@@ -56,8 +56,8 @@ impl Performance {
 }
 
 impl Conditioning {
-    /// Samples rings of equal area, each at its middle, then marches outward
-    /// until the index first falls below the claim.
+    /// Samples rings of equal area, each at its middle, then searches outward for the radius at which the index
+    /// first falls below the claim.
     fn sample(bars: &FiveBar, circle: Circle, rings: usize) -> Self {
         let spokes = 4 * rings;
         let mut sum = 0.0;
@@ -77,7 +77,7 @@ impl Conditioning {
                 }
             }
         }
-        // The rim itself, with the four points where it touches the edge.
+        // The rim itself, with the four points where it touches the edge of the workspace.
         for spoke in 0..spokes {
             let direction = Vector::direction(spoke as f64 * 360.0 / spokes as f64);
             min = min.min(lci(bars, circle.centre + direction * circle.radius));
@@ -126,7 +126,7 @@ impl Conditioning {
     }
 }
 
-/// The largest index in the circle near a sample, by steps that halve.
+/// The largest index near a sample in the circle, by hill climbing with steps that halve.
 fn climb(bars: &FiveBar, circle: Circle, from: (f64, Vector), step: f64) -> f64 {
     let (mut value, mut point) = from;
     let mut size = step;

@@ -1,9 +1,9 @@
-//! A search for the proportions that serve this robot best, beyond the paper.
+//! Search for the best proportions of the five-bar for this robot, beyond the paper.
 //!
-//! The paper takes r1, r2, r3 from a gecko's head and checks the conditioning index afterwards.
-//! Here every point of the triangle becomes a robot with the given base. Its cranks are mounted
-//! at the neutral angle with the largest sweep, which all margins and the servos' travel limit.
-//! All four servos may be anywhere within it at once, so any gait of that amplitude is safe.
+//! The paper takes r1, r2, r3 from a gecko's head and checks the conditioning index afterwards. Here every point of
+//! the triangle becomes a robot with the given base. Its cranks are mounted at the neutral angle that allows the
+//! largest sweep within all margins and the servos' travel. All four servos may be at any angle of the sweep at the
+//! same time, so any gait of that amplitude is safe.
 
 use indicatif::ProgressBar;
 use lizard_kinematics::{Check, End, FiveBar, Limits, Slider};
@@ -39,7 +39,7 @@ pub struct Design {
     pub proportions: Proportions,
     /// Dimensional factor, mm.
     pub d: f64,
-    /// theta1 at neutral, degrees; the others mirror it.
+    /// theta1 at neutral, degrees; the other servo angles mirror it.
     pub neutral: f64,
     /// Largest safe sweep to either side, degrees.
     pub sweep: f64,
@@ -49,14 +49,13 @@ pub struct Design {
     pub margin: f64,
     /// Mean conditioning index at the demanded sweep.
     pub lci: f64,
-    /// Mean conditioning index, margin and stride as shares of the best of
-    /// each, multiplied and rooted.
+    /// Geometric mean of conditioning index, margin and stride, each as a share of the best of all designs.
     pub score: f64,
     /// True if no other design is better in all three.
     pub pareto: bool,
 }
 
-/// Points of a piece: enough for all cores.
+/// Number of points in a piece: enough to occupy all cores.
 const AT_ONCE: usize = 64;
 
 /// The search, in pieces that do not depend on each other.
@@ -67,8 +66,8 @@ pub struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    /// Prepares the search of all points of the triangle. `own` returns the number of pieces to
-    /// compute here, out of all.
+    /// Prepares the search of all points of the triangle. `own` returns how many of all pieces are computed here,
+    /// which sets the length of the progress bar.
     pub fn new(
         step: f64,
         demands: Demands,
@@ -86,7 +85,7 @@ impl<'a> Search<'a> {
         search
     }
 
-    /// The number of pieces to compute.
+    /// The number of all pieces.
     pub fn pieces(&self) -> usize {
         self.points.len().div_ceil(AT_ONCE)
     }
@@ -102,15 +101,15 @@ impl<'a> Search<'a> {
     }
 }
 
-/// The designs of all pieces, the best first.
+/// The designs of all pieces, best first.
 pub fn ranked(pieces: Vec<Vec<Design>>) -> Vec<Design> {
     let mut designs = pieces.concat();
     rank(&mut designs);
     designs
 }
 
-/// The best design with some proportions; `None` if it cannot sweep as far as demanded, or has
-/// too short a link.
+/// The best design with these proportions; `None` if it cannot sweep as far as demanded, or has a link that is too
+/// short.
 pub fn design(proportions: Proportions, demands: &Demands) -> Option<Design> {
     let d = proportions.scale_for_base(demands.base);
     let bars = proportions.at_scale(d);
@@ -140,7 +139,7 @@ pub fn design(proportions: Proportions, demands: &Demands) -> Option<Design> {
     })
 }
 
-/// The largest sweep about a neutral angle that keeps every limit, degrees.
+/// The largest sweep about a neutral angle within all limits, degrees.
 fn widest(bars: &FiveBar, neutral: f64, demands: &Demands) -> f64 {
     let (mut safe, mut unsafe_from) = (0.0, demands.travel.min(89.9));
     if !meets_demands(bars, neutral, safe, demands) {
@@ -163,7 +162,7 @@ const ACROSS: [f64; 9] = [-1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75, 1.0];
 fn meets_demands(bars: &FiveBar, neutral: f64, sweep: f64, demands: &Demands) -> bool {
     let limits = &demands.limits;
     let slider = slider(bars, demands);
-    // theta5 in the tail's frame equals theta1, so neutral mirrors.
+    // theta5 in the tail's frame equals theta1, because the tail mirrors the head.
     let span = |front: f64, rear: f64| {
         slider
             .forward(-rear - 90.0, front + 90.0)
@@ -183,7 +182,7 @@ fn meets_demands(bars: &FiveBar, neutral: f64, sweep: f64, demands: &Demands) ->
     })
 }
 
-/// A side whose arms are as long as the cranks, as the paper's are.
+/// The slider of a side, with arms as long as the cranks, as in the paper.
 fn slider(bars: &FiveBar, demands: &Demands) -> Slider {
     Slider {
         offset: 0.0,

@@ -1,9 +1,8 @@
-//! One printed equation: how it reads, how it should read, and by how much
-//! either misses the geometric solution at a sample.
+//! A printed equation, its correction, and the errors of both against the geometric solution at a sample.
 
 use super::sample::Sample;
 
-/// The error of a form at a sample; `None` if it has no real value.
+/// A function that returns the error of a form at a sample; `None` if the form has no real value there.
 pub type Miss = fn(&Sample) -> Option<f64>;
 
 /// A printed equation.
@@ -21,8 +20,7 @@ pub struct Equation {
     pub clockwise: Option<Miss>,
     /// The corrected form, and its error.
     pub corrected: Option<(&'static str, Miss)>,
-    /// A place that deserves a closer look, and the error of the printed form there; no verdict
-    /// of its own.
+    /// A special case to examine, and the error of the printed form there; it has no verdict of its own.
     pub aside: Option<(&'static str, Miss)>,
 }
 
@@ -57,7 +55,7 @@ impl Equation {
         self
     }
 
-    /// Adds a place that deserves a closer look.
+    /// Adds a special case to examine.
     pub const fn with_special_place(mut self, place: &'static str, miss: Miss) -> Self {
         self.aside = Some((place, miss));
         self
@@ -69,15 +67,15 @@ impl Equation {
 pub struct Misses {
     /// The largest error among samples with a real value.
     pub worst: f64,
-    /// Share of the samples without one.
+    /// Share of the samples without a real value.
     pub unreal: f64,
 }
 
 impl Misses {
-    /// Errors below this are rounding, in any unit.
+    /// Errors below this are rounding errors, in any unit.
     const ROUNDING: f64 = 1e-6;
 
-    /// Measures one form.
+    /// Evaluates a form at all samples.
     pub fn of(miss: Miss, samples: &[Sample]) -> Self {
         let mut worst = 0.0_f64;
         let mut unreal = 0usize;

@@ -174,7 +174,7 @@ fn loop_gap(links: [(f64, f64); 4], base: f64) -> f64 {
     (a + b - c - d - Vector::new(base, 0.0)).length()
 }
 
-/// tan of half an angle by the quadratic formula.
+/// Tangent of half an angle by the quadratic formula.
 fn root(a: f64, b: f64, c: f64, sign: f64) -> Option<f64> {
     let under = b * b - 4.0 * a * c;
     (under >= 0.0).then(|| (-b + sign * under.sqrt()) / (2.0 * a))
@@ -231,8 +231,7 @@ fn vanishing_a(s: &Sample) -> Option<f64> {
     Some(low)
 }
 
-/// The printed theta3 close to where A vanishes. Samples without such a theta4
-/// say nothing and count as no miss.
+/// The error of the printed theta3 close to the theta4 where A vanishes; 0 for a sample without such a theta4.
 fn near_vanishing_a(s: &Sample) -> Option<f64> {
     let Some(zero) = vanishing_a(s) else {
         return Some(0.0);

@@ -106,12 +106,12 @@ fn arm(point: Vector, shaft: f64, crank: f64, angle: f64, coupler: f64) -> Optio
     Some(((point - tip).length() - coupler).abs())
 }
 
-/// The tail point from the middle of l5, chassis axes.
+/// The tail point relative to the middle of l5, in chassis axes.
 fn tail(s: &Sample) -> Vector {
     End::Tail.mirror(s.s.tail.end_point)
 }
 
-/// The middle of a slider from the middle between its shafts: 0 left, 1 right.
+/// The middle of a slider relative to the middle between its shafts: 0 left, 1 right.
 fn middle(s: &Sample, side: usize) -> Vector {
     let slider = [&s.s.left, &s.s.right][side];
     (slider.rear_tip + slider.front_tip - slider.front_shaft) * 0.5

@@ -72,15 +72,15 @@ const FRONT: &[usize] = &[1, 4];
 const BACK: &[usize] = &[8, 5];
 const ALL: &[usize] = &[1, 4, 8, 5];
 
-/// The largest error over some legs.
+/// The largest error over these legs.
 fn worst_of(s: &Sample, legs: &[usize], miss: impl Fn(f64) -> Option<f64>) -> Option<f64> {
     legs.iter()
         .map(|&leg| miss(s.angles().t[leg]))
         .try_fold(0.0, |worst: f64, value| Some(worst.max(value?)))
 }
 
-/// G, H, I as printed; H may come from elsewhere. The parallelogram's follower
-/// stands as its crank does.
+/// The error of the follower's angle by G, H, I as printed, or with another H. In a parallelogram the follower has
+/// the angle of the crank.
 fn follower(s: &Sample, legs: &[usize], sign: f64, h: Option<f64>) -> Option<f64> {
     let Leg {
         ground,
@@ -102,8 +102,8 @@ fn follower(s: &Sample, legs: &[usize], sign: f64, h: Option<f64>) -> Option<f64
     })
 }
 
-/// J, K, L with the sign of the terms in lg12: -1 as printed, +1 as it should
-/// be. The parallelogram's coupler stays at 0.
+/// The error of the coupler's angle by J, K, L, with the sign of the terms in lg12: -1 as printed, +1 as it should
+/// be. In a parallelogram this angle is 0.
 fn coupler(s: &Sample, legs: &[usize], slip: f64, sign: f64) -> Option<f64> {
     let Leg {
         ground,
@@ -125,8 +125,7 @@ fn coupler(s: &Sample, legs: &[usize], slip: f64, sign: f64) -> Option<f64> {
     })
 }
 
-/// tan of half an angle by the quadratic formula. Rounding may carry the root's
-/// argument below zero where it is zero.
+/// Tangent of half an angle by the quadratic formula. Rounding may make a radicand of zero slightly negative.
 fn half_angle_tangent(a: f64, b: f64, c: f64, sign: f64) -> Option<f64> {
     let under = b * b - 4.0 * a * c;
     (under > -1e-12).then(|| (-b + sign * under.max(0.0).sqrt()) / (2.0 * a))

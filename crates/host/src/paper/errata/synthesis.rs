@@ -76,7 +76,7 @@ pub const EQUATIONS: &[Equation] = &[
                     .map(|d| (d - difference).min(sum - d))
                     .fold(f64::INFINITY, f64::min)
             };
-            // It is inscribed, and no other centre has more room.
+            // The circle is inscribed, and no other centre allows a larger one.
             let other = clearance(sum * (2.0 * s.random[0] - 1.0), sum * s.random[1]);
             Some((clearance(0.0, y) - r).abs().max(other - r))
         },
@@ -122,8 +122,8 @@ pub const EQUATIONS: &[Equation] = &[
     ),
 ];
 
-/// The error, in radius, of a circle equation with this y term, at a random point of the rim
-/// of an arm's reach.
+/// The error, in radius, of the circle equation with this y term, at random points on the limits of the arms'
+/// reach.
 fn circle_error(s: &Sample, term: fn(f64) -> f64) -> Option<f64> {
     let bars = s.lizard.end(End::Head);
     let mut worst = 0.0_f64;
@@ -133,7 +133,7 @@ fn circle_error(s: &Sample, term: fn(f64) -> f64) -> Option<f64> {
             (bars.crank_left - bars.coupler_left).abs(),
         ] {
             let rim = cis(radius, PI * s.random[0]);
-            // x11 is measured from the middle, the rim from the shaft.
+            // x11 is measured from the middle of the base, the rim from the shaft.
             let (x11, y11) = (rim.x + shaft, rim.y);
             let square = (x11 - shaft).powi(2) + term(y11);
             worst = worst.max((square.sqrt() - radius).abs());
@@ -156,8 +156,8 @@ fn lci_at(s: &Sample, shrink: f64) -> f64 {
         })
 }
 
-/// Counts the lengths l0 to l19 that the table leaves out, if `read_length` corrects the number of
-/// each entry.
+/// Number of the links l0 to l19 that the table does not list, where `read_length` corrects the number of each
+/// entry.
 fn count_unlisted_links(read_length: fn(usize, f64) -> usize) -> f64 {
     let named = |link: usize| {
         TABLE

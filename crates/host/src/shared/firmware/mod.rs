@@ -1,15 +1,13 @@
 //! The choice of a firmware and its robot.
 //!
-//! The firmware is one image for any lizard: its robot is a section of flash after the code.
-//! The code is inside this program, so a robot.toml is all that a user needs: `lizard flash`,
-//! `image`, `sim`, `twin`, `console --sim` and all others put the section of the selected robot
-//! behind that code. A build in some folder is never used implicitly. Developers of the
-//! firmware name their build: by `--elf` for a simulation, as `make sim` does, or by `--image`
-//! for a board. Only `lizard sim bench` always needs an ELF, because it times functions by their
-//! names.
+//! The firmware is one image for any lizard: its robot is a section of flash after the code. The code is inside
+//! this program, so a robot.toml is all that a user needs: `lizard flash`, `image`, `sim`, `twin`, `console --sim`
+//! and all other commands put the section of the selected robot after that code. A build in some folder is never
+//! used implicitly. Developers of the firmware name their build: with `--elf` for a simulation, as `make sim` does,
+//! or with `--image` for a board. Only `lizard sim bench` always needs an ELF, because it finds the functions that
+//! it times by their names.
 //!
-//! An ELF has a robot in it. If that is not the selected robot, one of the two is a mistake,
-//! and the ELF is refused.
+//! An ELF contains a robot. If that is not the selected robot, one of the two is a mistake, and the ELF is refused.
 
 use lizard_core::numbers::robot::Robot as CoreRobot;
 use lizard_core::numbers::section::{Region, START};
@@ -28,13 +26,13 @@ mod simulated;
 /// `make code-image` writes the file, and a test compares it with a build of the source.
 pub const CODE: &str = include_str!("../../../../../firmware/code.hex");
 
-/// A robot's name and hash, as its banner says them.
+/// A robot's name and hash, as printed in the firmware's banner.
 pub fn label(robot: &CoreRobot) -> String {
     let name: String = robot.label().map(char::from).collect();
     format!("{name} {:08x}", robot.hash())
 }
 
-/// The robot in a flash, from address 0 on.
+/// The robot in the contents of flash, which start at address 0.
 pub(crate) fn robot_in(flash: &[u8]) -> Option<CoreRobot<'_>> {
     CoreRobot::open(Region::new(flash.get(usize::from(START)..)?)).ok()
 }

@@ -19,7 +19,7 @@ pub struct Firmware {
     pub image: Image,
 }
 
-/// A file that is not a program of an AVR, or cannot be read.
+/// The error for a file that is not a program of an AVR, or cannot be read.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: {error}; `make firmware` builds it", elf.display())]
 pub struct Unreadable {
@@ -68,11 +68,10 @@ impl From<FirmwareError> for Failure {
     }
 }
 
-/// The firmware to run for a robot: the given file, which must have this robot in it, or the
-/// code inside this program with this robot. `file` is the robot's source.
+/// The firmware to run for a robot: the given file, which must contain this robot, or the code inside this program
+/// followed by this robot. `file` is the robot's source.
 ///
-/// An image without a robot's section is another program's and is accepted: running it shows
-/// what it does.
+/// An image without a robot's section is another program and is accepted: running it shows what it does.
 ///
 /// # Errors
 /// Fails if the file is missing, is not a program of an AVR, or has another robot in it.
@@ -105,10 +104,10 @@ pub(crate) fn of_robot(
     Ok(Firmware { name, image })
 }
 
-/// Bytes of code in an image with this robot, without the erased flash up to the section.
+/// Size of the code in an image with this robot, bytes, without the erased flash up to the section.
 pub(crate) fn code_bytes(image: &Image, robot: &Robot) -> u32 {
     let end = image.symbol("__code_end").map(|end| end.address as u32);
-    // A HEX file of another program that writes them has a gap there.
+    // A HEX file has no symbols. If it leaves out the erased flash, all bytes before the section are code.
     end.unwrap_or_else(|| image.flash_used() - robot.section().len() as u32)
 }
 
@@ -122,7 +121,7 @@ pub fn image_with(robot: &Robot) -> Image {
     image
 }
 
-/// The image with this robot in it, whose routines wait for no contact: see [`Robot::without_contacts`].
+/// The image with this robot, whose routines do not wait for contacts: see [`Robot::without_contacts`].
 ///
 /// # Panics
 /// Never: the section is as long as that of the robot.

@@ -13,7 +13,7 @@ pub enum Bound {
     AtMost(f64),
     /// The smallest allowed value.
     AtLeast(f64),
-    /// There is no budget for it.
+    /// There is no budget.
     None,
 }
 
@@ -28,15 +28,15 @@ pub struct Row {
     pub measured: Option<f64>,
     /// The budget of the figure.
     pub budget: Bound,
-    /// The same figure of Arduino Servo 1.3.0 with four servos at a constant
-    /// 1500 us, where there is one; see `SERVO_LIBRARY`.
+    /// The same figure of Arduino Servo 1.3.0 with four servos at a constant 1500 us, if known; see
+    /// `SERVO_LIBRARY`.
     pub servo_library: Option<&'static str>,
     /// True for a figure that depends on the machine that it is measured on.
     pub wall_clock: bool,
 }
 
 impl Row {
-    /// True if the figure keeps to its budget; a figure that was not measured passes.
+    /// True if the figure is within its budget; a figure that was not measured passes.
     pub fn is_met(&self) -> bool {
         self.measured.is_none_or(|measured| match self.budget {
             Bound::AtMost(max) => measured <= max,
@@ -46,22 +46,21 @@ impl Row {
     }
 }
 
-/// The subject of the right-hand column.
+/// Description of the right-hand column.
 pub const SERVO_LIBRARY: &str = "Arduino Servo 1.3.0 (core 1.8.8, ATmega328P at 16 MHz) with four servos at a constant \
      1500 us; its float solve is theta2 and theta3 of head and tail";
 
-/// Cycles from the tick to the end of its slot, when the next frame is taken.
+/// Cycles from the control tick to the end of its slot, when the interrupts take the next frame.
 const IN_TIME: f64 = 63_000.0;
-/// The share of these cycles that interrupts leave to main while the line is saturated both
-/// ways.
+/// The share of these cycles that interrupts leave to main while the line is saturated in both directions.
 const LEFT_TO_MAIN: f64 = 0.87;
 /// Cycles of the control tick, mean and worst.
 const TICK: [f64; 2] = [5_000.0, 10_000.0];
-/// The same of a robot whose gaits leave no room for the maps of certified cells, so that
-/// the guard measures every pose.
+/// The same for a robot whose gaits leave no room for the maps of certified cells, so that the guard measures every
+/// pose.
 const TICK_WITHOUT_MAPS: [f64; 2] = [20_000.0, 20_000.0];
-/// Cycles that the servo interrupts leave to others: their lead of 220 cycles, less the 60 that
-/// they need before they read the timer.
+/// Longest time that another interrupt may take without delaying a servo's edge, cycles: the servo interrupts start
+/// 220 cycles early and need 60 of them before they read the timer.
 const BESIDE_SERVOS: f64 = 160.0;
 /// Wall time that ten simulated minutes may take, s.
 const MAX_RUN_S: f64 = 60.0;

@@ -1,4 +1,4 @@
-//! The exactness of the pulses.
+//! The exactness of the pulses: widths and periods in cycles.
 
 use simulated_uno::most_pins_high;
 
@@ -11,20 +11,20 @@ use crate::simulate::sim::frame::{FRAME, first_cycle, frames};
 /// The errors of the pulses' widths and periods.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Exactness {
-    /// Least and largest width less its command, cycles; nothing if the commands
-    /// are not known, because the firmware is not of this program's source.
+    /// Smallest and largest difference between a width and its command, cycles; `None` if the commands are not
+    /// known, because the firmware was built from another source.
     pub error: Option<[i64; 2]>,
-    /// Largest deviation of two frames' distance from 20 ms, cycles.
+    /// Largest deviation of the distance between two frames from 20 ms, cycles.
     pub period: u64,
-    /// The most servo pins high at once.
+    /// Largest number of servo pins that are high at the same time.
     pub pins_high: u32,
     /// The step in which widths vary, cycles; `None` if they do not vary.
     pub step: Option<u64>,
 }
 
 impl Exactness {
-    /// Measures all pulses so far of the firmware of `robot`, if at most the first `commands`
-    /// bytes sent were commands.
+    /// Measures all pulses that the firmware of `robot` has sent so far. The commands that set them must be within
+    /// the first `commands` bytes that the board received.
     ///
     /// # Errors
     /// Fails if the board has sent no pulse.
@@ -72,7 +72,7 @@ impl Exactness {
         })
     }
 
-    /// Peak to peak, cycles.
+    /// Peak-to-peak error of the widths, cycles.
     pub fn jitter(&self) -> Option<u64> {
         self.error
             .map(|[smallest, largest]| largest.abs_diff(smallest))

@@ -1,4 +1,4 @@
-//! The measurements, each on a board of its own.
+//! The measurements of the firmware, each on a board of its own.
 
 use std::iter::zip;
 use std::path::Path;
@@ -16,65 +16,64 @@ use crate::simulate::patrol::PATROL;
 use crate::simulate::sim::frame::FRAME;
 use crate::simulate::sim::tour;
 
-/// The firmware's costs and exactness. Cycles are of 62.5 ns. None stands for a figure that
-/// could not be measured: a robot without a gait that moves has no figures of one, and a
-/// firmware of another source than this program's has no commands to compare its pulses with.
+/// The costs and the exactness of the firmware. A cycle is 62.5 ns. `None` is a figure that could not be measured:
+/// a robot without a moving gait has no figures of one, and the commanded widths of a firmware from another source
+/// are not known.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figures {
     /// The gait that was measured: the first that moves.
     pub gait: Option<String>,
-    /// Bytes of flash that the code has, with its tables and initial values.
+    /// Bytes of flash of the code, with its tables and initial values.
     pub code: u32,
     /// Bytes of the robot's section.
     pub section: u32,
-    /// True if the section has maps of certified cells; else the guard measures every pose.
+    /// True if the section has maps of certified cells; otherwise the guard measures every pose.
     pub has_maps: bool,
     /// Bytes of RAM that are static.
     pub static_ram: u16,
-    /// Fewest bytes ever between the stack and static data.
+    /// Smallest number of bytes between the stack and static data at any time.
     pub stack_spare: u16,
     /// The same for the deepest stack that the code allows, computed instead of measured.
     pub stack_margin: i32,
-    /// Mean cycles of the control tick, interrupts left out, in the gait in which they are
-    /// the most.
+    /// Mean cycles of the control tick without interrupts, in the gait with the largest mean.
     pub tick_mean: Option<f64>,
-    /// The most cycles of a control tick in any motion, interrupts left out.
+    /// The most cycles of a control tick in any motion, without interrupts.
     pub tick_worst: u64,
-    /// Mean cycles of the control tick in a routine with inputs, interrupts left out.
+    /// Mean cycles of the control tick in a routine with inputs, without interrupts.
     pub routine_mean: Option<f64>,
-    /// The most cycles of it.
+    /// The most cycles of a control tick in that routine, without interrupts.
     pub routine_worst: Option<u64>,
-    /// The most cycles from the tick to the end of its computation while the
-    /// serial line is saturated both ways, interrupts and answers included.
+    /// The most cycles from the tick to the end of its computation while the serial line is saturated in both
+    /// directions, with interrupts and answers.
     pub tick_latency: u64,
-    /// The most cycles of any other step of main, interrupts left out: a line that is
-    /// written, a byte that ends a line, a part of a save or load.
+    /// The most cycles of any other step of main, without interrupts: a line that is written, a byte that ends a
+    /// line, a part of a save or load.
     pub step: u64,
     /// Mean cycles of the guard in a tick of the gait.
     pub guard: Option<f64>,
-    /// Mean cycles of all that main does in a frame of the gait, tick included.
+    /// Mean cycles of main in a frame of the gait, with the tick.
     pub main: Option<f64>,
     /// Cycles that the servo interrupts take in a frame.
     pub servo_interrupts: f64,
-    /// The longest that a serial interrupt keeps a servo's edge waiting, cycles.
+    /// The longest time that a serial interrupt delays a servo interrupt, cycles.
     pub serial_interrupt: u64,
     /// Share of the gait's time that the CPU is asleep, percent.
     pub asleep: Option<f64>,
-    /// Peak to peak of measured less commanded width, cycles: idle line.
+    /// Peak-to-peak difference of measured and commanded widths on an idle line, cycles.
     pub jitter_idle: Option<u64>,
-    /// The same with the line saturated both ways.
+    /// The same with the line saturated in both directions.
     pub jitter_flooded: Option<u64>,
-    /// Worst deviation of a width from its command, cycles, in both.
+    /// Worst deviation of a width from its command in both cases, cycles.
     pub width_error: Option<u64>,
-    /// Worst deviation of a servo's period from 20 ms, cycles, in both.
+    /// Worst deviation of a servo's period from 20 ms in both cases, cycles.
     pub period_error: u64,
-    /// The most servo pins high at once, in both.
+    /// Largest number of servo pins high at the same time, in both cases.
     pub pins_high: u32,
     /// The step in which widths vary in the gait, cycles.
     pub resolution: Option<u64>,
     /// Edges that the firmware counts as late.
     pub late: u64,
-    /// Bytes that it counts as lost while the sender waits for answers.
+    /// Bytes that the firmware counts as lost while the sender waits for answers.
     pub lost: u64,
     /// Wall time of ten simulated minutes of the gait, s.
     pub wall: f64,
@@ -90,8 +89,8 @@ const STEPS: [&str; 3] = [
     "Console::receive",
     "Control::write_memory",
 ];
-/// Lines that take long: every answer of several lines, and settings that end a servo's
-/// travel where its pulses do.
+/// Lines that take long: those with answers of several lines, and settings with which the limits of the pulses
+/// restrict a servo's travel.
 const LONG_LINES: [&str; 20] = [
     "status",
     "help",
@@ -118,18 +117,18 @@ const LONG_LINES: [&str; 20] = [
 const SERVO_VECTORS: [u8; 2] = [11, 12];
 /// Data sheet numbers of USART_RX and USART_UDRE.
 const SERIAL_VECTORS: [u8; 2] = [18, 19];
-/// Cycles from the end of an instruction to a handler's first: 4 of the interrupt
-/// and 3 of the jump in the vector table.
+/// Cycles from the end of an instruction to the first one of an interrupt handler: 4 of the interrupt and 3 of the
+/// jump in the vector table.
 const ENTRY: u64 = 7;
 /// Ten minutes, ms.
 const LONG_RUN_MS: u64 = 600_000;
 
 impl Figures {
-    /// Measures an ELF, with a robot and with the same robot on patrol, where it has
-    /// room for one. `progress` receives the name of each measurement.
+    /// Measures an ELF with a robot, and with the same robot on patrol if that is given. `progress` receives the
+    /// name of each measurement.
     ///
     /// # Errors
-    /// Fails for a firmware that cannot be loaded, dies, or does not answer.
+    /// Fails for a firmware that cannot be loaded, stops, or does not answer.
     pub fn measure(
         elf: &Path,
         robot: &Robot,
@@ -212,7 +211,7 @@ impl Figures {
     }
 }
 
-/// The most cycles of a step of main that is not a frame, interrupts left out.
+/// The most cycles of a step of main that is not a frame, without interrupts.
 ///
 /// # Errors
 /// See [`Figures::measure`].
@@ -234,7 +233,7 @@ fn command(gait: &str) -> String {
     gait.replace('-', " ")
 }
 
-/// A board after a time under one command on an idle line, and the cycles spent.
+/// A board after some time with one command on an idle line, and the cycles that it spent.
 struct Steady {
     board: SimulatedBoard,
     cycles: u64,
@@ -270,21 +269,21 @@ impl Steady {
     }
 }
 
-/// Sends commands that move nothing for twenty seconds, at the full rate of the line,
-/// while the robot walks and as many bytes come back. Also returns the number of bytes
-/// received before.
+/// Sends commands that move nothing for twenty seconds, at the full rate of the line, while the robot walks and as
+/// many bytes come back. Also returns the number of bytes that the board received before them.
 fn flood(mut board: SimulatedBoard, gait: &str) -> Result<(SimulatedBoard, usize), BoardError> {
     let received_before = saturate(&mut board, gait)?;
     board.run_ms(20_000)?;
     board.uno.flood(b"");
     board.run_ms(300)?;
-    // What is left of the flood ends with this line.
+    // This line ends the last command of the flood.
     board.uno.send(b"\n");
     board.run_ms(100)?;
     Ok((board, received_before))
 }
 
-/// Returns how many bytes came before the flood.
+/// Starts a gait and saturates the line in both directions. Returns the number of bytes that the board received
+/// before.
 fn saturate(board: &mut SimulatedBoard, gait: &str) -> Result<usize, BoardError> {
     board.say("watch 1")?;
     board.say(gait)?;
@@ -293,8 +292,7 @@ fn saturate(board: &mut SimulatedBoard, gait: &str) -> Result<usize, BoardError>
     Ok(received_before)
 }
 
-/// Everything one can ask for that moves: each gait from the one before, a far
-/// pose, home, a stop.
+/// Commands for every kind of motion: each gait after the previous one, a far pose, neutral, a stop.
 fn motions(robot: &Robot) -> Vec<String> {
     let names = robot.gaits().iter().map(|gait| command(gait.name()));
     let mut lines: Vec<String> = names.collect();
@@ -311,8 +309,7 @@ fn pose(robot: &Robot, turns: [f64; 4]) -> String {
     format!("pose {a1:.2} {a2:.2} {a3:.2} {a4:.2}")
 }
 
-/// Every command with a report of every frame, each sent when the one before has
-/// been answered.
+/// Sends every command, with a report of every frame. Each is sent after the previous one was answered.
 fn session(mut board: SimulatedBoard, robot: &Robot) -> Result<SimulatedBoard, BoardError> {
     board.say("watch 1")?;
     let mut lines = motions(robot);
@@ -346,8 +343,8 @@ fn times(
     Ok(calls)
 }
 
-/// Lines that take long to execute. Among them is the line that is no gait's name but
-/// agrees with the most characters of the names.
+/// Lines that take long to execute. Among them is an unknown name that has the most leading characters in common
+/// with the names of the gaits.
 fn long_lines(robot: &Robot) -> Vec<String> {
     let names = || robot.gaits().iter().map(|gait| command(gait.name()));
     let alike = |line: &String| -> usize {
@@ -367,8 +364,8 @@ fn long_lines(robot: &Robot) -> Vec<String> {
     lines
 }
 
-/// The most cycles of a function while each line is obeyed in a gait. A line may be
-/// refused: that takes as long.
+/// The most cycles of a function while each line is executed during a gait. A line may be refused, which takes as
+/// long.
 fn longest(
     mut board: SimulatedBoard,
     function: &str,
@@ -386,8 +383,7 @@ fn longest(
     Ok(largest)
 }
 
-/// The ticks of half a minute of a patrol, in which the button and then the nose are pressed now
-/// and again.
+/// The control ticks of a patrol in which each input is closed and opened five times.
 fn patrol(elf: &Path, robot: &Robot) -> Result<Vec<Call>, BoardError> {
     let mut board = SimulatedBoard::power_on(elf, Fidelity::DataSheet, robot)?;
     board.run_ms(1000)?;
@@ -413,18 +409,17 @@ fn mean(calls: &[Call]) -> f64 {
     all as f64 / calls.len().max(1) as f64
 }
 
-/// The longest time from a tick to the return of the function that computes its
-/// frame, on a saturated line.
+/// The longest time from a tick to the return of the function that computes its frame, on a saturated line, cycles.
 fn latency(mut board: SimulatedBoard, gait: &str) -> Result<u64, BoardError> {
     saturate(&mut board, gait)?;
     let calls = board.time_calls(TICK, 5000)?;
-    // The tick comes a slot before A1's pulse.
+    // The tick is one slot before A1's pulse.
     let tick = board.first_pulse()? - FRAME / 5;
     let late = calls.iter().map(|call| (call.leave - tick) % FRAME);
     Ok(late.max().unwrap_or(0))
 }
 
-/// The longest of the serial interrupts on a saturated line, with their entry.
+/// The longest serial interrupt on a saturated line, with its entry, cycles.
 fn longest_serial(
     awake: impl Fn() -> Result<SimulatedBoard, BoardError>,
     gait: &str,

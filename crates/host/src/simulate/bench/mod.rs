@@ -1,5 +1,5 @@
-//! `lizard sim bench`: what the firmware costs and how exact it is, compared with its budgets
-//! and with the Arduino Servo library.
+//! `lizard sim bench`: measures the costs and the exactness of the firmware, and compares them with its budgets and
+//! with the Arduino Servo library.
 
 mod budget;
 mod exactness;
@@ -57,7 +57,7 @@ impl<'a> Judged<'a> {
 /// Measures the firmware and prints the table.
 ///
 /// # Errors
-/// Fails without a firmware, if it dies or does not answer, or for a broken budget.
+/// Fails without a firmware, if it stops or does not answer, or for a broken budget.
 pub fn run(args: Args) -> Result<(), Failure> {
     let Some(elf) = args.elf else {
         return Err(Failure::Input(

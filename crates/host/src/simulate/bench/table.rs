@@ -1,4 +1,4 @@
-//! The table of budgets for people.
+//! The table of figures and budgets for people.
 
 use std::io::{self, Write};
 

@@ -5,10 +5,9 @@
 //! compared with them: any difference is a fault of the compiler, of the board's code or of the
 //! pulses.
 //!
-//! The time at which main takes a byte has to be reconstructed: not before it is complete at
-//! the UNO, and not while the serial line has no room for the longest answer. That follows from
-//! the length of the text written so far. The waits of main while it writes the EEPROM are not
-//! reconstructed; here they take no time.
+//! The time at which main takes a byte has to be reconstructed: not before the byte is complete at the UNO, and not
+//! while the serial line has no room for the longest answer. That follows from the length of the text written so
+//! far. Main also waits while it writes the EEPROM; these waits are not reconstructed, and take no time here.
 
 use lizard_core::console::LONGEST_LINE;
 use lizard_core::numbers::robot::Robot;
@@ -24,13 +23,13 @@ const BYTE: u64 = 1360;
 /// Bytes that the serial line takes before its writer has to wait: a ring of 255,
 /// and two in the transmitter.
 const CAPACITY: u64 = 255 + 2;
-/// The number of queued bytes that leaves room for the longest answer.
+/// Largest number of queued bytes that leaves room for the longest answer.
 const QUEUED: u64 = CAPACITY - LONGEST_LINE as u64;
-/// Cycles that the AVR takes to compute a frame, about.
+/// Cycles that the AVR takes to compute a frame, approximately.
 const FRAME_TAKES: u64 = 8_000;
 /// Cycles that the AVR takes to read the end of a line and to act on it, at most.
 const READING_TAKES: u64 = 3_000;
-/// The robot wakes within this many frames of power-on.
+/// Largest number of frames from power-on until the robot wakes.
 const WAKES: usize = 500;
 
 /// The firmware's main loop on a virtual board.
@@ -50,24 +49,24 @@ impl CoreRun {
         }
     }
 
-    /// The main loop, woken at a cycle, until it has nothing left to do.
+    /// Runs the main loop from this cycle on, until it has nothing left to do.
     fn wake(&mut self, cycle: u64) {
         self.running.board.transmitter.at(cycle);
         self.running.settle();
     }
 
-    /// The frame that a tick at this cycle begins.
+    /// Runs a tick at this cycle, and returns the widths of the frame that it begins.
     fn tick(&mut self, cycle: u64) -> [u16; 4] {
         self.wake(cycle);
         self.running.board.tick();
         _ = self.running.main.step(&mut self.running.board);
         let widths = self.running.board.submitted().0.map(|width| width.0);
-        // The output of a frame comes right after it.
+        // The output of a frame is written right after it.
         self.wake(cycle + FRAME_TAKES);
         widths
     }
 
-    /// The cycle at which waiting lines are written and waiting bytes are taken.
+    /// The cycle at which waiting lines are written and waiting bytes are read; `None` if nothing waits.
     fn retry(&self) -> Option<u64> {
         let board = &self.running.board;
         let waits = board.unread() > 0 || self.running.has_output();
@@ -80,18 +79,18 @@ impl CoreRun {
 pub struct Commands {
     /// Widths in cycles, 0 for no pulse, of each frame from A1's first pulse on.
     pub widths: Vec<[u16; 4]>,
-    /// The core's output, with `late` and `rx_lost` left at 0.
+    /// The core's output, in which `late` and `rx_lost` are always 0.
     pub written: String,
 }
 
-/// Runs the core of a robot along with a recording: `received` are the bytes that
-/// reached the UNO, `first` is the cycle of A1's first pulse, `count` the number of
-/// frames from there on. Exact except for the lines of [`undecided`].
+/// Runs the core of a robot on a recording: `received` are the bytes that reached the UNO, `first` is the cycle of
+/// A1's first pulse, `count` the number of frames from there on. The result is exact except for the lines of
+/// [`undecided`].
 pub fn play(robot: Robot<'static>, received: &[SerialByte], first: u64, count: usize) -> Commands {
     play_with_contacts(robot, received, &[], first, count)
 }
 
-/// The same with contacts that close and open.
+/// Like [`play`], with contacts that close and open.
 pub fn play_with_contacts(
     robot: Robot<'static>,
     received: &[SerialByte],
@@ -106,7 +105,7 @@ pub fn play_with_contacts(
     let mut widths = Vec::with_capacity(count);
     for frame in 0..silent + count {
         let start = first + frame as u64 * FRAME;
-        // A tick comes a slot before the first pulse of the frame it begins.
+        // A tick is one slot before the first pulse of the frame that it begins.
         let tick = start.saturating_sub(silent as u64 * FRAME + SLOT);
         loop {
             let retry = run.retry().filter(|retry| *retry < tick);
@@ -142,8 +141,7 @@ pub fn play_with_contacts(
     }
 }
 
-/// The numbers (from 0) of lines that are completed so shortly before a tick that it is a
-/// matter of cycles if main has read them in time.
+/// Indices of the lines that end so shortly before a tick that a few cycles decide if main has read them in time.
 pub fn undecided(received: &[SerialByte], first: u64) -> impl Iterator<Item = usize> {
     let tick = first.saturating_sub(SLOT) % FRAME;
     let ends = received.iter().filter(|byte| byte.byte == b'\n');
@@ -152,7 +150,7 @@ pub fn undecided(received: &[SerialByte], first: u64) -> impl Iterator<Item = us
         .filter_map(|(line, left)| (left < READING_TAKES).then_some(line))
 }
 
-/// Frames before A1's first pulse, if no command comes.
+/// Number of frames before A1's first pulse, if no command comes.
 fn frames_before_waking(robot: Robot<'static>) -> usize {
     let mut run = CoreRun::new(robot);
     (0..WAKES).take_while(|_| run.tick(0)[0] == 0).count()

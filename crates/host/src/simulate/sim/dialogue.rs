@@ -1,24 +1,24 @@
-//! The dialogue, printed line by line as it happens.
+//! Prints the dialogue line by line as it happens.
 
 use std::io::{self, Write};
 
 use super::session::{DialogueLine, Sender};
 use crate::shared::plain::plain;
 
-/// Lines of a run of `# t=` lines that are printed before the rest is counted.
+/// Number of lines of a run of `# t=` lines that are printed; the others are only counted.
 const SHOWN: usize = 3;
 
-/// Prints lines; of a long run of `watch`'s `# t=` lines only the first three
-/// and how many follow, unless it is to print all.
+/// Prints lines. Of a run of `# t=` lines, which `watch` causes, it prints only the first three and the number of
+/// the others, unless it is to print all.
 #[derive(Debug)]
 pub struct Printer {
     shows_all: bool,
-    /// Lines of the present run of `# t=` lines.
+    /// Number of lines in the current run of `# t=` lines.
     run: usize,
 }
 
 impl Printer {
-    /// A printer of all lines, or one that shortens runs.
+    /// A printer of all lines, or one that shortens runs of `# t=` lines.
     pub fn new(shows_all: bool) -> Self {
         Self { shows_all, run: 0 }
     }
@@ -50,7 +50,7 @@ impl Printer {
         out.flush()
     }
 
-    /// Says how many lines were left out, if any.
+    /// Prints how many lines were left out, if any.
     ///
     /// # Errors
     /// Fails if writing fails.

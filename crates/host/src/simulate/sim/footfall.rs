@@ -5,8 +5,8 @@ use simulated_uno::FREQUENCY;
 use super::analysis::ServoFrame;
 use super::frame::FRAME;
 
-/// A foot slower than this (deg/s of its leg) stands still: a cubic or smoothstep
-/// end passes it within a frame.
+/// Rate of a leg, deg/s, below which its foot counts as still. A motion with a cubic or smoothstep end passes this
+/// rate within a frame.
 const STILL: f64 = 4.0;
 
 /// The movement of a foot from one frame to the next.
@@ -31,7 +31,7 @@ pub struct FootSpan {
     pub to: f64,
 }
 
-/// The movements of a servo's foot, in order of time. `None` while it rests.
+/// The movements of a servo's foot, in order of time; no span while the servo rests.
 pub fn foot_spans(
     instants: impl Iterator<Item = ServoFrame> + Clone,
     servo: usize,
@@ -101,7 +101,7 @@ mod tests {
                     .filter(|seconds| *seconds > 0.0)
                     .sum::<f64>()
             };
-            // Still only where it turns round.
+            // A foot is still only where it reverses.
             assert!(
                 (within(Phase::Stance) - 2.25).abs() < 0.13,
                 "{}",
@@ -117,7 +117,7 @@ mod tests {
 
     #[test]
     fn turning_left_pushes_forward_on_the_left_and_back_on_the_right() {
-        // The common stroke of `left` is its first fifth.
+        // In the first fifth of `left` all legs make their common stroke.
         let phases = [0, 1, 2, 3].map(|servo| at("left", servo, 1.1));
         let [left, right] = [Some(Phase::Swing), Some(Phase::Stance)];
         assert_eq!(phases, [left, right, right, left]);

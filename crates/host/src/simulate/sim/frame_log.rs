@@ -12,10 +12,9 @@ pub struct FrameLog {
     /// Widths of each frame's pulses, cycles, in servo order; 0 without a pulse,
     /// 65535 for one that is longer.
     pub widths: Vec<[u16; 4]>,
-    /// For each servo the largest deviation of two successive pulses' distance
-    /// from 20 ms, cycles.
+    /// For each servo, the largest deviation of the distance between two successive pulses from 20 ms, cycles.
     pub period_error: [u64; 4],
-    /// The most servo pins high at once.
+    /// Largest number of servo pins that are high at the same time.
     pub most_pins_high: u32,
 }
 
@@ -33,7 +32,7 @@ impl FrameLog {
     }
 }
 
-/// Makes a [`FrameLog`] of edges as they come.
+/// Builds a [`FrameLog`] from edges, in as many parts as they come.
 #[derive(Debug)]
 pub struct FrameReader {
     pins: [Pin; 4],
@@ -45,7 +44,7 @@ pub struct FrameReader {
 }
 
 impl FrameReader {
-    /// Reads the pulses of these pins, A1 to A4; there is room for `frames`.
+    /// Creates a reader for the pulses of these pins, A1 to A4, with memory for `frames` frames.
     pub fn new(pins: [Pin; 4], frames: usize) -> Self {
         Self {
             pins,
@@ -59,7 +58,7 @@ impl FrameReader {
         }
     }
 
-    /// Takes edges in order of time. Edges of other pins are skipped.
+    /// Reads edges in order of time. Edges of other pins are skipped.
     pub fn read(&mut self, mut edges: Vec<Edge>) {
         // At equal cycles a fall comes first: back-to-back pulses do not overlap.
         edges.sort_by_key(|edge| (edge.cycle, edge.high));

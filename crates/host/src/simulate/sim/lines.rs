@@ -1,4 +1,4 @@
-//! Serial bytes put together into lines.
+//! Assembles serial bytes into lines.
 
 use simulated_uno::SerialByte;
 
@@ -18,14 +18,14 @@ impl Line {
     }
 }
 
-/// The beginning of a line whose end has not come yet.
+/// Keeps the beginning of a line until its end arrives.
 #[derive(Debug, Default)]
 pub struct LineReader {
     partial: String,
 }
 
 impl LineReader {
-    /// The lines that end within `bytes`.
+    /// Returns the lines that end within `bytes`.
     pub fn read<'a>(&'a mut self, bytes: &'a [SerialByte]) -> impl Iterator<Item = Line> + 'a {
         bytes.iter().filter_map(|byte| match byte.byte {
             b'\n' => Some(Line {

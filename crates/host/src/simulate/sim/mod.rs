@@ -1,5 +1,5 @@
-//! `lizard sim`: the real firmware on a simulated UNO: what it prints, which pulses its
-//! servos get, and how far the robot would walk.
+//! `lizard sim`: runs the real firmware on a simulated UNO, and reports its output, the pulses of its servos, and
+//! how far the robot would walk.
 
 pub mod analysis;
 pub mod core_run;
@@ -125,8 +125,7 @@ fn seconds(text: &str) -> Result<f64, String> {
 /// Runs the firmware and prints the results.
 ///
 /// # Errors
-/// Fails without a firmware, for a wrong script, a firmware that dies, or a file that cannot be
-/// written.
+/// Fails without a firmware, for a wrong script, a firmware that crashes, or a file that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let fidelity = match args.fidelity {
         FidelityArg::DataSheet => Fidelity::DataSheet,
@@ -253,7 +252,7 @@ fn end_message(state: &State) -> String {
         State::Alive => "the firmware is alive".to_owned(),
         State::Halted => "the firmware sleeps with interrupts off, forever".to_owned(),
         State::Crashed { pc, message } => {
-            // The simulator's name for it, where it has no words.
+            // simavr's own word for it, if it gives no other message.
             let reason = match message.as_str() {
                 "avr_sadly_crashed" => "no such instruction or address",
                 words => words,
@@ -296,14 +295,14 @@ fn script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
     ))
 }
 
-/// A script from its file.
+/// Reads a script from its file.
 pub(crate) fn read_script(path: &Path) -> Result<Script, Failure> {
     let name = path.display();
     let text = files::read_text(path)?;
     Script::parse(&text).map_err(|error| Failure::Input(format!("{name}: {error}")))
 }
 
-/// A bar of the simulated time.
+/// A progress bar of the simulated time.
 pub(crate) fn simulated_time(end_ms: u64) -> ProgressBar {
     bar(
         end_ms as usize,

@@ -1,4 +1,4 @@
-//! Presses of a robot's inputs at given times.
+//! Presses of a robot's inputs (contacts) at given times.
 
 use std::str::FromStr;
 
@@ -14,7 +14,7 @@ const SHORT: u64 = 200;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Press {
     input: String,
-    /// Milliseconds since power-on, as is the end.
+    /// The start; both times in ms since power-on.
     from: u64,
     to: u64,
 }
@@ -59,7 +59,7 @@ impl FromStr for Press {
 /// The changes of a robot's contacts, in order of time.
 ///
 /// # Errors
-/// Fails if the robot does not have an input.
+/// Fails if the robot does not have an input of that name.
 pub fn changes(presses: &[Press], robot: &Robot) -> Result<Vec<Change>, Failure> {
     let mut all = Vec::new();
     for press in presses {

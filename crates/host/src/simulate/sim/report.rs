@@ -1,4 +1,4 @@
-//! The run in a table, or as JSON.
+//! The results of a run, as tables or as JSON.
 
 use std::io::{self, Write};
 
@@ -10,7 +10,7 @@ use super::analysis::{CommandPath, Run, Safety, ServoReport};
 use super::session::DialogueLine;
 use crate::shared::number::tidy;
 
-/// Everything that a run has to show.
+/// All results of a run.
 #[derive(Debug, Serialize)]
 pub struct Report<'a> {
     /// The name of the firmware.
@@ -29,13 +29,13 @@ pub struct Report<'a> {
     pub safety: Safety,
     /// The predicted path of each command; the last entry is the complete run.
     pub way: Vec<CommandPath>,
-    /// The most servo pins high at once.
+    /// Largest number of servo pins that are high at the same time.
     pub most_pins_high: u32,
-    /// Share of cycles that the CPU was asleep, percent.
+    /// Share of the cycles in which the CPU was asleep, percent.
     pub asleep_percent: f64,
-    /// Bytes of flash that the firmware has.
+    /// Bytes of flash of the firmware.
     pub flash: u32,
-    /// The RAM in use. An ELF tells it, a bare image does not.
+    /// The RAM in use; known only from an ELF, not from a bare image.
     #[serde(flatten)]
     pub ram: Option<Ram>,
     /// Received bytes that the UNO lost.
@@ -46,7 +46,7 @@ pub struct Report<'a> {
     pub ended: String,
     /// The file of the picture.
     pub svg: Option<String>,
-    /// Servo angles of every frame.
+    /// The servo angles of every frame.
     pub frames: Run<'a>,
 }
 
@@ -176,7 +176,7 @@ impl Report<'_> {
 pub struct Ram {
     /// Bytes of static data.
     pub static_ram: u16,
-    /// Fewest bytes between the stack and static data.
+    /// Smallest number of bytes between the stack and static data.
     pub stack_spare: u16,
 }
 

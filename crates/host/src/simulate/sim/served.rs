@@ -1,4 +1,4 @@
-//! The simulated UNO at a serial port of this machine, for other programs.
+//! Serves the simulated UNO at a serial port of this machine, for other programs.
 
 use std::fs;
 use std::io::{self, Write};
@@ -15,21 +15,21 @@ use super::press::Change;
 use crate::Failure;
 use crate::shared::files::{self, note_input};
 
-/// A board as sold, with this boot loader in flash and nothing else.
+/// A new board, with this boot loader in flash and nothing else.
 ///
 /// # Errors
-/// Fails if the file is missing or no AVR program.
+/// Fails if the file is missing or is not an AVR program.
 pub(super) fn as_sold(boot_loader: &Path, fidelity: Fidelity) -> Result<Uno, Failure> {
     let image = Image::read(note_input(boot_loader))
         .map_err(|error| Failure::Input(format!("{}: {error}", boot_loader.display())))?;
     Ok(Uno::with_boot_loader(image, fidelity))
 }
 
-/// Serves the UNO until the program is ended, by cable or by radio, and presses its contacts. `link` becomes a symbolic link to
-/// the port, whose own name differs from run to run, and is removed at the end.
+/// Serves the UNO, by cable or by radio, until the program is ended, and presses its contacts. `link` becomes a
+/// symbolic link to the port, because the port's own name differs from run to run; the link is removed at the end.
 ///
 /// # Errors
-/// Fails if there is no pseudo terminal, or `link` is something else already.
+/// Fails if there is no pseudo terminal, or something other than such a link already exists at `link`.
 pub(super) fn until_interrupted(
     mut uno: Uno,
     link: Option<&Path>,
@@ -48,7 +48,7 @@ pub(super) fn until_interrupted(
     };
     let name = match link {
         Some(link) => {
-            // First, so that the program cannot end between the two.
+            // Before the link is made, so that a signal between the two does not leave it behind.
             remove_at_end(link.to_owned(), port.path().to_owned())?;
             point(link, port.path())?;
             link.to_owned()
@@ -81,8 +81,8 @@ pub(super) fn until_interrupted(
     }
 }
 
-/// The message when the chip stops. A new board has nothing in flash at the firmware's address,
-/// so it stops as soon as the boot loader hands over.
+/// The message when the chip stops. A new board has nothing in flash at the firmware's address, so it stops as soon
+/// as the boot loader starts the program.
 fn end_message(state: &State, flash: &[u8], port: &Path) -> String {
     match state {
         State::Crashed { .. } if flash.starts_with(&[0xff, 0xff]) => format!(
@@ -93,15 +93,15 @@ fn end_message(state: &State, flash: &[u8], port: &Path) -> String {
     }
 }
 
-/// Removes the link when the program is ended by a signal, as Ctrl-C does; unless it
-/// leads elsewhere by then. The program then ends as it would have without this.
+/// Removes the link when a signal, such as that of Ctrl-C, ends the program, unless the link leads elsewhere by
+/// then. Then lets the signal have its default effect.
 fn remove_at_end(link: PathBuf, port: PathBuf) -> Result<(), Failure> {
     let mut signals = Signals::new([SIGINT, SIGTERM, SIGHUP])
         .map_err(|error| Failure::Impossible(format!("Ctrl-C cannot be waited for: {error}")))?;
     thread::spawn(move || {
         for signal in &mut signals {
             if fs::read_link(&link).is_ok_and(|end| end == port) {
-                // Without it the link leads nowhere, and the next run replaces it.
+                // If this fails, the link leads nowhere, and the next run replaces it.
                 let _ = fs::remove_file(&link);
             }
             let _ = signal_hook::low_level::emulate_default_handler(signal);
@@ -110,8 +110,7 @@ fn remove_at_end(link: PathBuf, port: PathBuf) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Makes `link` point at `port`. A link to another pseudo terminal, which a run that
-/// was killed has left, is replaced.
+/// Makes `link` point at `port`. Replaces a link to another pseudo terminal, which a killed run has left.
 fn point(link: &Path, port: &Path) -> Result<(), Failure> {
     let cannot = |error: io::Error| files::write_failure(link, &error);
     let foreign = || {

@@ -1,4 +1,4 @@
-//! A script played on the simulated UNO.
+//! Plays a script on the simulated UNO.
 
 use std::io;
 use std::time::{Duration, Instant};
@@ -56,11 +56,11 @@ pub struct Recording {
     pub cycles: u64,
     /// The state in which the firmware ended.
     pub state: State,
-    /// Wall time it took.
+    /// Wall time of the run.
     pub wall: Duration,
 }
 
-/// Plays a script from power-on. `on_event` gets what happens, in order of time.
+/// Plays a script from power-on. Calls `on_event` for each event, in order of time.
 ///
 /// # Errors
 /// Returns the errors of `on_event`, which end the run.
@@ -119,7 +119,7 @@ pub fn play(
 struct Dialogue<F> {
     reader: LineReader,
     banner: Option<String>,
-    /// Commands are answered in the order in which they are sent.
+    /// The answers, in the order of the commands.
     answers: Vec<Option<String>>,
     on_event: F,
 }

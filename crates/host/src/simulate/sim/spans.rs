@@ -4,7 +4,7 @@ use lizard_core::console::word::{Effect, Word};
 
 use super::script::Script;
 
-/// A stretch of the run under one command.
+/// A time span in which one command is in effect.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Span {
     /// The command in effect.
@@ -15,17 +15,16 @@ pub struct Span {
     pub to: f64,
 }
 
-/// True if a command begins, ends or paces a motion. Any other word is the name of a gait of some
-/// robot.
+/// True if a command starts, ends or paces a motion. A word that the console does not know counts as the name of a
+/// gait of some robot.
 fn changes_motion(command: &str) -> bool {
     let word = command.split_whitespace().next().unwrap_or_default();
     Word::find(word.as_bytes())
         .is_none_or(|word| !matches!(word.effect(), Effect::None | Effect::Calibrates))
 }
 
-/// The commands that changed the motion, in order of time, after the stand that
-/// the robot wakes to. A command that was refused changes nothing: the one
-/// before it continues.
+/// The commands that changed the motion, in order of time, after the initial `stand`. A refused command changes
+/// nothing: the previous one continues.
 pub fn spans(script: &Script, answers: &[Option<String>]) -> Vec<Span> {
     let mut starts = vec![(0.0, "stand")];
     for (step, answer) in script.steps.iter().zip(answers) {

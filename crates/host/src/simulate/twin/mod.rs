@@ -73,8 +73,7 @@ enum ServoArg {
 /// Runs the firmware, walks the robot and prints the report.
 ///
 /// # Errors
-/// Fails without a firmware, for a wrong script, a firmware that dies, or a file that cannot be
-/// written.
+/// Fails without a firmware, for a wrong script, a firmware that crashes, or an output that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let script = script(&args, &robot)?;
@@ -115,7 +114,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     Ok(out.flush()?)
 }
 
-/// Plays the script silently.
+/// Plays the script without printing anything.
 ///
 /// # Errors
 /// Fails if the firmware ends before the script does.
@@ -151,7 +150,7 @@ fn script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
     })
 }
 
-/// A routine after a second of standing, for one round, and a second after its end.
+/// A script for one round of a routine, after a second of standing and with a second after its end.
 fn a_round(robot: &Robot, routine: &Routine) -> Script {
     const STAND_MS: u64 = 1000;
     let round = Round::of(robot, routine);
@@ -187,7 +186,8 @@ pub(crate) fn moving_gait<'a>(robot: &'a Robot, name: &str) -> Result<&'a Checke
     }
 }
 
-/// A script that walks each of these gaits for three cycles, after a second at its first pose.
+/// A script that walks each of these gaits for three cycles, after a second in which the robot takes its first
+/// pose.
 pub(crate) fn walk_script(robot: &Robot, gaits: &[&str]) -> Script {
     const CYCLES: f64 = 3.0;
     const STAND_MS: u64 = 1000;

@@ -1,4 +1,4 @@
-//! A run of the firmware, walked frame by frame.
+//! Replays a run of the firmware on the simulated robot, frame by frame.
 
 use std::ops::Range;
 
@@ -9,19 +9,19 @@ use simulated_uno::CYCLES_PER_US;
 use crate::simulate::sim::frame_log::FrameLog;
 use crate::simulate::sim::spans::Span;
 
-/// Every frame of a run.
+/// The simulated robot in every frame of a run.
 pub struct Replay {
     /// The robot that walked.
     pub robot: Robot,
     /// Seconds from power-on to the first frame.
     pub start_s: f64,
-    /// The robot after each frame.
+    /// The state of the robot after each frame.
     pub states: Vec<State>,
-    /// The stages, in order.
+    /// The stages, one for each command, in order.
     pub stages: Vec<Stage>,
 }
 
-/// The frames under one command.
+/// A stage of a run: the frames in which one command is in effect.
 pub struct Stage {
     /// The command of this stage.
     pub command: String,
@@ -30,7 +30,7 @@ pub struct Stage {
 }
 
 impl Replay {
-    /// Walks the frames of a run.
+    /// Runs the simulated robot through the frames of a run.
     pub fn of(robot: &Robot, log: &FrameLog, spans: Vec<Span>, model: ServoModel) -> Self {
         let us = |width: u16| (width > 0).then(|| f64::from(width) / CYCLES_PER_US as f64);
         let mut twin = Twin::new(robot, model);

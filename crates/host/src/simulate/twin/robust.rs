@@ -35,7 +35,7 @@ struct Line {
     pace: f64,
     /// Supply of the servos, V.
     volts: f64,
-    /// The share on the robot's own floor, and with the most friction.
+    /// The share on the robot's own floor, and with the most friction of the variations.
     share: [f64; 2],
 }
 
@@ -61,7 +61,7 @@ impl Line {
     }
 }
 
-/// Walks every gait of the run `times` times.
+/// Walks every gait of the run `times` times, each time with another robot and floor, and prints the spreads.
 ///
 /// # Errors
 /// Fails if writing fails.
@@ -176,7 +176,7 @@ fn print(spreads: &[Spread], times: u32, out: &mut impl Write) -> io::Result<()>
     Ok(())
 }
 
-/// A share of a line, with a mark if little is left.
+/// A share of the torque-speed line, with a mark if little is left.
 fn mark(share: f64) -> String {
     let mark = if share >= TIGHT { '!' } else { ' ' };
     format!("{share:.2}{mark}")

@@ -1,4 +1,4 @@
-//! The cranks and the spline.
+//! Tests of the drawing of the cranks and the spline.
 
 use lizard_host::draw::horns;
 use lizard_robot::Robot;
@@ -10,7 +10,7 @@ use super::files::{SERVOS, files, paper, value_of};
 fn a_crank_is_drawn_and_named_at_its_neutral_angle() {
     for (name, text) in files() {
         let drawing = Drawing::of(&horns(&Robot::parse(&text).expect("a robot")));
-        // All four in the same scale.
+        // All four cranks have the same scale.
         let link = |key: &str| -> f64 {
             let line = text
                 .lines()

@@ -1,4 +1,4 @@
-//! Reads a drawing.
+//! Reads an SVG drawing.
 
 use std::collections::HashMap;
 
@@ -6,7 +6,7 @@ use svg::parser::Event;
 
 pub type Point = (f64, f64);
 
-/// An element of a drawing: its tag, its attributes, the words in it.
+/// An element of a drawing: its tag, its attributes, and the text in it.
 #[derive(Debug)]
 pub struct Element {
     pub tag: String,
@@ -28,7 +28,7 @@ impl Element {
         number
     }
 
-    /// The places that it is drawn through.
+    /// The points through which the element is drawn.
     pub fn points(&self) -> Vec<Point> {
         let at = |x, y| (self.number(x), self.number(y));
         match self.tag.as_str() {

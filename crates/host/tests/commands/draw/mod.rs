@@ -1,5 +1,4 @@
-//! The drawings that a builder follows: pins, wires and angles are those of robot.toml, for
-//! every robot.
+//! Tests of the drawings that a builder follows: pins, wires and angles are those of robot.toml, for every robot.
 
 mod cranks;
 mod drawing;
@@ -29,7 +28,7 @@ fn everything_is_on_the_page_and_large_enough_to_be_read() {
                 if element.tag == "text" {
                     let size = element.number("font-size");
                     assert!(size >= 12.0, "{name}: {element:?}");
-                    // A wide font: 0.55 of its size for a character.
+                    // A wide font has 0.55 of its size per character.
                     let long = 0.55 * size * element.words.chars().count() as f64;
                     let (x, y) = points[0];
                     if element.text("transform").is_empty() {

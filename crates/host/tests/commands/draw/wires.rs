@@ -38,7 +38,7 @@ fn many_pins() -> Vec<[String; 4]> {
         .collect()
 }
 
-/// A wire's end may be this far from its terminal's centre, px, since two wires may share a
+/// Largest distance of a wire's end from its terminal's centre, px. It is not 0, since two wires may share a
 /// terminal.
 const MAX_TERMINAL_DISTANCE: f64 = 13.0;
 
@@ -49,8 +49,8 @@ struct Nets<'a> {
 }
 
 impl<'a> Nets<'a> {
-    /// Joins the ends of wires, links and terminal positions. Components (fuse, switch,
-    /// resistors) do not join.
+    /// Joins the ends of wires, links and terminal positions. Components (fuse, switch, resistors) do not join
+    /// their ends.
     fn of(drawing: &'a Drawing) -> Self {
         let mut nets = Self {
             drawing,
@@ -112,7 +112,7 @@ impl<'a> Nets<'a> {
     #[track_caller]
     fn assert_joined(&self, names: &[&str]) {
         for name in names {
-            // The name is in the drawing.
+            // Fails if the drawing does not have the name.
             self.drawing.named(name);
             assert_eq!(
                 self.root(name),
@@ -182,7 +182,7 @@ fn every_component_is_joined_to_what_it_needs_and_to_nothing_else() {
                 drawing.0.iter().any(|element| element.words == words),
                 "{name}"
             );
-            // Its resistor leads from its terminal position to ground.
+            // The servo's resistor leads from its terminal position to ground.
             let leads = drawing.path(&format!("resistor-{servo}"));
             let ends =
                 [leads[0], leads[leads.len() - 1]].map(|at| nets.root(&nets.nearest_terminal(at)));
@@ -256,7 +256,7 @@ fn wires_only_cross_they_never_run_into_or_along_each_other() {
                     };
                     let (x, y) = (apart(|at| at.0), apart(|at| at.1));
                     if upright(one) == upright(two) {
-                        // Side by side, unless they share a hole or a screw.
+                        // Parallel wires keep apart, unless they share a hole or a screw.
                         let shared = a.starts_with("link-") && b.starts_with("link-");
                         let near = x < 3.0 && y < 3.0;
                         assert!(
@@ -264,7 +264,7 @@ fn wires_only_cross_they_never_run_into_or_along_each_other() {
                             "{a} along {b}: {one:?} {two:?}"
                         );
                     } else if x <= 0.0 && y <= 0.0 {
-                        // They cross, well away from the ends of both.
+                        // Wires that cross do so well away from the ends of both.
                         let depth = (-x).min(-y);
                         let touch = one.iter().any(|end| two.contains(end));
                         assert!(depth > 2.0 || touch, "{a} runs into {b}: {one:?} {two:?}");

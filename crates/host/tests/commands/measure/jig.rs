@@ -1,4 +1,4 @@
-//! `lizard measure servo`, `steps` and `slope` on films whose truth is known.
+//! `lizard measure servo`, `steps` and `slope` on rendered films, whose true values are known.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use super::board::{self, BOARD, Board};
 use super::servo::Servo;
 use crate::program::{read, run_in, scratch};
 
-/// An empty folder.
+/// Creates an empty folder.
 fn folder(name: &str) -> PathBuf {
     let folder = scratch().join(name);
     let _ = fs::remove_dir_all(&folder);
@@ -19,7 +19,7 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// Writes a picture as JPEG under the name of its time.
+/// Writes a picture as a JPEG file that is named after its time.
 fn write(folder: &Path, seconds: f64, picture: &Picture) {
     let [width, height] = picture.size().map(|length| length as u16);
     let path = folder.join(format!("{seconds:.4}s.jpg"));
@@ -30,13 +30,13 @@ fn write(folder: &Path, seconds: f64, picture: &Picture) {
         .expect("it is written");
 }
 
-/// The robot that is flashed for the jig.
+/// Writes jig.toml: the paper's robot, with pulses that turn faster than a servo can follow.
 fn jig(folder: &Path) {
     let text = read("robots/paper.toml").replace("slew = 300.0", "slew = 1000.0");
     fs::write(folder.join("jig.toml"), text).expect("a file");
 }
 
-/// Checks a figure of an object against its truth, and its error against the largest useful one.
+/// Checks that a figure is within two errors of its true value, and that the error is below `largest`.
 fn check(object: &Value, key: &str, truth: f64, largest: f64) {
     let figures = object["figures"].as_array().expect("figures");
     let figure = figures.iter().find(|figure| figure["key"] == key);
@@ -106,7 +106,7 @@ fn a_film_of_a_horn_gives_the_lines_of_a_servo_that_turns_the_other_way() {
         number.trim().parse::<f64>().expect("a number")
     };
     assert!((value("us_per_degree") - 10.0 / servo.gain).abs() < 0.1);
-    // What it is at the 4.8 V of the file.
+    // The file states the time at 4.8 V; the film was made at 4.5 V.
     let time = 60.0 / servo.own_rate() * 4.5 / 4.8;
     assert!((value("s_per_60_deg") - time).abs() < 0.003, "{changed:?}");
     assert_eq!(value("volts"), 4.5);
@@ -114,7 +114,7 @@ fn a_film_of_a_horn_gives_the_lines_of_a_servo_that_turns_the_other_way() {
         changed.iter().any(|line| line.contains(", was 10.00")),
         "{changed:?}"
     );
-    // Besides the line [servo] and a blank one, nothing else.
+    // Only the measured keys, a table header and blank lines are added.
     assert!(after.lines().count() - before.lines().count() < 8);
     let kept = measure(&["40", "--output", "jig.toml"]).refusal();
     assert!(kept.contains("jig.toml would be overwritten"), "{kept}");

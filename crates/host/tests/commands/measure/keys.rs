@@ -1,11 +1,11 @@
-//! `lizard measure keys` on ways that are written down.
+//! `lizard measure keys` on hand-written results of `lizard measure`.
 
 use std::fs;
 use std::path::PathBuf;
 
 use crate::program::{Outcome, read, robot, run_in, scratch};
 
-/// A way as `lizard measure --json` prints it; all errors 0.05.
+/// The movement per cycle of a gait, as `lizard measure --json` prints it; all errors are 0.05.
 fn object(gait: &str, [forward, left, turn]: [f64; 3]) -> String {
     let part = |mean: f64| format!(r#"{{"mean":{mean},"sd":0.1,"error":0.05}}"#);
     format!(
@@ -16,12 +16,12 @@ fn object(gait: &str, [forward, left, turn]: [f64; 3]) -> String {
     )
 }
 
-/// Ways as `lizard measure --json` prints them.
+/// The movements of several gaits, as `lizard measure --json` prints them.
 fn ways(objects: &[String]) -> String {
     format!(r#"{{"gaits":[{}]}}"#, objects.join(","))
 }
 
-/// Writes a file.
+/// Writes a file into the scratch folder.
 fn file(name: &str, text: &str) -> PathBuf {
     let path = scratch().join(name);
     fs::write(&path, text).expect("it is written");
@@ -80,7 +80,7 @@ fn no_robot_and_no_input_is_replaced() {
 
 #[test]
 fn a_new_robot_differs_in_the_lines_that_were_measured_and_in_no_other() {
-    // As the model goes on pads with a ratio of 1.1, by its slopes at the file's ratio of 1.
+    // The model's movement with a friction ratio of 1.1, extrapolated by its derivatives at the file's ratio, 1.
     let measured = [
         object("walk", [33.57, 0.07, 0.0]),
         object("trot", [25.63, -0.02, 0.0]),

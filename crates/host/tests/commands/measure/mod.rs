@@ -1,4 +1,4 @@
-//! `lizard measure` on films whose truth is known, and the sheet that they show.
+//! `lizard measure` on rendered films, whose true values are known, and the printed sheet that they show.
 
 #[allow(dead_code)]
 #[path = "../../../../film/tests/film/board.rs"]
@@ -27,10 +27,10 @@ use crate::program::{lizard, run_in, scratch};
 use render::{Spot, Studio};
 use walk::{Show, Varies, Walk, gait, truth};
 
-/// Pictures in a second.
+/// Pictures per second of the films.
 const RATE: f64 = 8.0;
 
-/// A studio with few pixels, which the sheet fills.
+/// A studio whose camera has few pixels and is filled by the sheet.
 fn studio() -> Studio {
     let mut studio = Studio::random(&mut Rng::with_seed(4));
     (studio.size, studio.focal) = ([640, 360], 1.0);
@@ -40,7 +40,7 @@ fn studio() -> Studio {
     studio
 }
 
-/// Five cycles of a robot that varies a little.
+/// Five cycles of `walk` that differ a little from each other.
 fn walked() -> Walk {
     let gait = gait("walk");
     let start = -truth(&gait).forward * 2.5;
@@ -51,13 +51,13 @@ fn walked() -> Walk {
     Walk::new(&gait, [start, 0.0, 0.0], 5, varies, &mut Rng::with_seed(4))
 }
 
-/// Films five cycles of `walk` into a folder of its own.
+/// Renders five cycles of `walk` into a new folder.
 fn film(folder: &str, name: impl Fn(usize) -> String) -> PathBuf {
     let walk = walked();
     film_of(folder, name, walk.seconds(), |time| walk.at(time))
 }
 
-/// Films a robot into a folder of its own, as JPEG; each picture's name by its number.
+/// Renders a moving robot as JPEG files in a new folder; `name` makes a file name from the picture's number.
 fn film_of(
     folder: &str,
     name: impl Fn(usize) -> String,
@@ -82,14 +82,14 @@ fn film_of(
     folder
 }
 
-/// The words of a table.
+/// The words of a table, without its numbers and verdicts.
 fn without_figures(table: &str) -> Vec<&str> {
     let verdict = ["more", "less", "errors", "agrees"];
     let part = ["ahead", "left", "turn", "mm", "deg"];
     table
         .lines()
         .flat_map(|line| {
-            // Which part is farthest off is a figure, too.
+            // The name of the part that is farthest off depends on the figures, so it is skipped, too.
             let skipped = if line.starts_with("path") {
                 &part[..]
             } else {
@@ -150,7 +150,7 @@ fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
     let figures: Value = serde_json::from_str(&figures).expect("figures");
     let mujoco = &figures["paper"]["walk"]["rigid, level"]["mujoco"];
     assert_eq!(&object["mujoco"], mujoco);
-    // A comment changes nothing, another mass does.
+    // The stored MuJoCo figures stay valid if a comment is added to robot.toml, but not if the mass changes.
     let text = crate::program::read("robots/paper.toml");
     let heavier = text.replace("mass = 435.0", "mass = 500.0");
     assert_ne!(heavier, text);
@@ -174,7 +174,7 @@ fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
     assert_eq!(range["least_by"], "mounting of the legs");
     let table = measure(&[]).success();
     assert!(table.contains("agrees"), "{table}");
-    // The page's example is such a film.
+    // The example in docs/measure.md comes from such a film.
     let page = crate::program::read("docs/measure.md");
     let (_, example) = page
         .split_once("--gait walk --height 95\n")
@@ -196,7 +196,7 @@ fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
         Some(path.lines().count() as u64 - 1),
         film["pictures"].as_u64()
     );
-    // Measured against another gait's prediction it is that gait no more.
+    // A film is refused if the path does not fit the named gait; the message names the gait that fits.
     let another = run_in(
         scratch(),
         &["measure", folder, "--gait", "left", "--height", "95"],
@@ -273,7 +273,7 @@ fn gaits_in_a_film_are_distinguished_by_their_names_or_by_their_paths() {
     for words in ["walk, ", "left, ", "measured", "predicted", "turn, deg"] {
         assert!(drawn.contains(words), "{words}: {drawn}");
     }
-    // A gait that did not run, and a wrong order.
+    // Refused: a gait that is not in the film, and gaits in the wrong order.
     let missing = measure(&["--gait", "walk,left,walk,back"]).refusal();
     assert!(
         missing.starts_with("lizard: 3 walks between rests of")
@@ -365,7 +365,7 @@ fn a_film_without_ffmpeg_says_what_to_install() {
     assert_eq!(output.status.code(), Some(1));
 }
 
-/// Programs in place of ffmpeg and ffprobe: the film is its pictures already, and the times are those of a phone.
+/// Replaces ffmpeg and ffprobe by scripts: one prints decoded pictures, the other uneven times like a phone's.
 #[test]
 #[cfg(unix)]
 fn a_film_is_read_through_ffmpeg_at_the_times_from_ffprobe() {

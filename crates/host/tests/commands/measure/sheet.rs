@@ -1,4 +1,4 @@
-//! The sheet's PDF, drawn here and read again by the detector.
+//! The sheet's PDF, rasterised here and read by the tag detector.
 
 use std::fs;
 
@@ -6,12 +6,12 @@ use lizard_film::{Picture, read, sheet};
 
 use crate::program::{run, scratch};
 
-/// Pixels for each mm.
+/// Pixels per mm.
 const PIXELS: f64 = 3.0;
-/// mm of a point of PDF.
+/// Millimetres per PDF point.
 const POINT: f64 = 25.4 / 72.0;
 
-/// The numbers before an operator on each line of a text.
+/// The operands of each line of a text that ends in a PDF operator.
 fn operands<'a>(text: &'a str, operator: &'a str) -> impl Iterator<Item = Vec<f64>> + 'a {
     let lines = text
         .lines()
@@ -40,7 +40,8 @@ fn sheet_on(paper: &str) -> (String, [f64; 2]) {
     (text, size)
 }
 
-/// The filled rectangles of a page as a picture, and the largest reach of ink, mm from the left and from below.
+/// The filled rectangles of a page as a picture, and the extent of the ink: least and greatest mm from the left,
+/// then from below.
 fn drawn(text: &str, [width, height]: [f64; 2]) -> (Picture, [[f64; 2]; 2]) {
     let columns = (width * PIXELS) as usize;
     let rows = (height * PIXELS) as usize;
@@ -62,7 +63,7 @@ fn drawn(text: &str, [width, height]: [f64; 2]) -> (Picture, [[f64; 2]; 2]) {
         if lines.peek() != Some(&"f") {
             continue;
         }
-        // The middle of a pixel decides.
+        // A pixel is filled if its centre lies in the rectangle.
         let range =
             |from: f64, to: f64| (from * PIXELS + 0.5) as usize..(to * PIXELS + 0.5) as usize;
         for row in range(height - y - h, height - y) {
@@ -122,7 +123,7 @@ fn a_strip_has_a_line_of_100_mm_from_end_to_end() {
         .iter()
         .filter(|line| (line[2] * POINT - sheet::RULER).abs() < 0.01);
     assert_eq!(lines.count(), sheet::STRIPS);
-    // The ticks of the ends begin and end with it.
+    // The outer edges of the end ticks are the ends of the line.
     let ticks = rectangles
         .iter()
         .filter(|line| (line[3] * POINT - 8.0).abs() < 0.01);

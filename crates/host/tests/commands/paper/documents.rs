@@ -201,7 +201,7 @@ fn what_the_page_says_about_the_papers_walk_is_what_the_gaits_make() {
         let row = row.expect(name).split_whitespace();
         row.filter_map(|word| word.parse().ok()).collect()
     };
-    // The third mount, 41.4 deg, and the fourth friction, 1.25; a turn has two numbers.
+    // The third mount is 41.4 deg and the fourth friction ratio 1.25; the row of a turn has two numbers per column.
     let [mounted, turned] = [
         numbers("mount, deg", "walk")[2],
         numbers("mount, deg", "left")[5],

@@ -1,5 +1,4 @@
-//! The paper's figures and those measured for this project, from the commands
-//! that print them, by the paper's robot.
+//! Numbers of the paper and numbers measured for this project, as the commands print them for the paper's robot.
 
 use serde_json::Value;
 
@@ -95,7 +94,7 @@ fn count_and_rank_give_four_freedoms_and_one_for_each_leg() {
         .collect();
     assert_eq!(freedoms, [(4, 4), (1, 1), (1, 1), (1, 1), (1, 1)]);
     assert_eq!(all[0]["rank"], 32);
-    // A flat leg gains a freedom, which counting cannot see.
+    // A flat leg gains a freedom, which Gruebler's count does not show.
     let flat = lizard(
         &paper("pose --show freedoms --json --theta1 138 --theta4 0 --theta5 221 --theta8 318"),
         "",
@@ -275,7 +274,7 @@ fn matrices_name_their_rows_and_columns_in_servo_order() {
             assert_eq!(row.as_array().unwrap().len(), columns);
         }
     }
-    // The head's rows know the front servos only, the tail's the back ones.
+    // The head's rows depend on the front servos only, the tail's on the back ones.
     for (row, front) in [(0, true), (1, true), (2, false), (3, false)] {
         for column in 0..4 {
             let entry = number(&report["k"]["values"][row][column]);

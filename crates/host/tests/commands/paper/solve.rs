@@ -211,7 +211,7 @@ fn a_time_is_passed_through() {
 
 #[test]
 fn the_trace_of_every_gait_can_be_solved_and_is_safe() {
-    // Whatever robot.toml holds: every one of its gaits keeps its limits.
+    // Holds for any robot.toml: every gait of a valid file keeps the file's limits.
     let gaits = lizard("gaits --json", "");
     assert_eq!(gaits.code, Some(0), "{}", gaits.err);
     for gait in gaits.out.lines() {
@@ -268,7 +268,7 @@ fn an_angle_that_a_servo_cannot_reach_is_not_safe() {
     );
     let table = lizard(&robot.of("pose"), "138.59,41.41,338.8,221.41\n");
     assert!(table.out.contains("| servo A3 would turn"), "{}", table.out);
-    // The tail point of that pose is out of reach by the inverse, too.
+    // The inverse reports the tail point of that pose as unreachable, too.
     let tail: Vec<f64> = beyond["tail"]
         .as_array()
         .unwrap()

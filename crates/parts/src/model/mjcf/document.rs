@@ -1,4 +1,4 @@
-//! The file from the top: options, defaults, meshes, floor, and then the robot.
+//! The MJCF file as a whole: options, defaults, meshes and floor, then the robot.
 
 use crate::layers::body::Mount;
 use crate::model::node::Node;
@@ -8,7 +8,7 @@ use crate::model::writer::Writer;
 
 /// Time of a step, s.
 const STEP: f64 = 0.0002;
-/// Stiffness of constraints and contacts: time constant, s, and damping ratio. A soft floor
+/// Stiffness of constraints and limits, and below that of contacts: time constant, s, and damping ratio. A soft floor
 /// would hide part of a foot's excess length.
 const HARD: &str = "0.002 1";
 pub(super) const CONTACT: &str = "0.001 1";
@@ -46,7 +46,7 @@ impl Writer<'_> {
     fn write_options(&mut self) {
         let xml = &mut self.xml;
         xml.leaf(r#"compiler angle="radian" autolimits="true""#);
-        // Feet of a few g chatter on the default contacts.
+        // Feet of a few grams chatter with MuJoCo's default contact settings.
         xml.leaf(format!(
             r#"option timestep="{STEP}" gravity="{}" integrator="implicitfast" cone="elliptic" impratio="100" noslip_iterations="20""#,
             self.scene.floor.gravity()
@@ -74,7 +74,7 @@ impl Writer<'_> {
         xml.leaf(format!(
             r#"texture name="floor" type="2d" builtin="checker" rgb1="0.75 0.75 0.72" rgb2="0.82 0.82 0.8" {SIZE}"#
         ));
-        // A square is 5 cm wide.
+        // Makes a square 5 cm wide.
         xml.leaf(r#"material name="floor" texture="floor" texrepeat="10 10" texuniform="true""#);
         for Piece { name, mesh, .. } in shown {
             let corners = mesh.corners.as_flattened().iter();
@@ -98,7 +98,7 @@ impl Writer<'_> {
     }
 }
 
-/// The attributes that make the ends of a joint's range hard.
+/// The attributes that make a joint's range limits stiff.
 pub(super) fn limits() -> String {
     format!(r#"solreflimit="{HARD}" solimplimit="{STIFF}""#)
 }

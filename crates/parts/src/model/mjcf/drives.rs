@@ -1,4 +1,4 @@
-//! The constraints that close the loops, and the motors that follow pulses.
+//! Constraints that close the loops, and motors that follow the servo pulses.
 
 use lizard_robot::FRAMES_PER_SECOND;
 use lizard_robot::servo::NAMES;
@@ -43,8 +43,8 @@ impl Writer<'_> {
         self.xml.close();
     }
 
-    /// Writes a keyframe for each frame of 20 ms, its time and the servos' angles, and last the
-    /// standing robot.
+    /// Writes one keyframe for each frame of 20 ms, with its time and the servos' target angles, and then one for
+    /// the standing robot.
     pub(super) fn write_keyframes(&mut self) {
         self.xml.open("keyframe");
         if let Some(course) = &self.scene.course {

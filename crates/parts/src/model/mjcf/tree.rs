@@ -1,4 +1,4 @@
-//! The tree of bodies, each with the joint to its parent.
+//! The tree of bodies, each with the joint to its parent, as MJCF.
 
 use lizard_robot::SLOT;
 
@@ -66,8 +66,8 @@ impl Writer<'_> {
         let mut joint = format!(r#"joint name="{name}" type="{kind}" axis="{axis}""#);
         let joints = self.scene.motors.joints;
         if let Some(servo) = self.motor_on(node) {
-            // The motor's own voltage takes from its torque as it turns faster. Through the gears
-            // its rotor is far harder to turn than a leg, so it smooths the steps of the pulses.
+            // Back-EMF reduces the motor's torque as it turns faster. Seen through the gears, its rotor has far
+            // more inertia than a leg, so it smooths the steps of the pulses.
             let motor = self.scene.motors.each[servo];
             let damping = round(motor.damping() * MILLI);
             let armature = round(motor.inertia() * MILLI);
@@ -82,7 +82,7 @@ impl Writer<'_> {
         match (node, self.scene.pull) {
             (Node::Of(Mount::Link(_)), _) if self.has_play() => {
                 let (play, limits) = (round(self.scene.play.to_radians()), limits());
-                // Grease: a link that is free in its play does not ring.
+                // Grease: it damps a link that moves freely within its play.
                 joint += &format!(r#" range="{} {play}" {limits} damping="0.00001""#, -play);
             }
             (Node::Pad(_), _) => {
@@ -102,10 +102,10 @@ impl Writer<'_> {
     }
 }
 
-/// The attribute of a joint's dry friction, N or N m; none without.
+/// The attribute of a joint's dry friction, N or N m; empty if there is none.
 fn friction_loss(friction: f64) -> String {
     match friction > 0.0 {
-        // MuJoCo's own default yields: a servo that hardly moves would have less friction.
+        // MuJoCo's default friction constraint is soft: a servo that hardly moves would have less friction.
         true => format!(
             r#" frictionloss="{}" solreffriction="0.001 1" solimpfriction="0.99 0.999 0.001""#,
             round(friction)

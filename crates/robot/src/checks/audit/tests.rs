@@ -1,4 +1,4 @@
-//! Gaits at their limits and one step beyond.
+//! Tests with gaits at their limits and just beyond.
 
 use crate::testing::{all, body, robot, with};
 use crate::{CheckedGait, Robot};
@@ -7,7 +7,7 @@ use lizard_core::numbers::part::{End, Servo, Side as CoreSide};
 use lizard_core::numbers::units::Sine;
 use lizard_kinematics::{Check, Side};
 
-/// The slider's least and greatest travel on each side over a gait, mm.
+/// The smallest and largest slider travel on each side over a gait, mm.
 fn travels(robot: &Robot, gait: &CheckedGait) -> [(f64, f64); 2] {
     let mut found = [(f64::INFINITY, f64::NEG_INFINITY); 2];
     for phase in (0..=u16::MAX).step_by(32) {
@@ -23,8 +23,8 @@ fn travels(robot: &Robot, gait: &CheckedGait) -> [(f64, f64); 2] {
 
 const STAND: &str = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
 
-/// The unequal robot with sliders at nominal in its neutral pose, and one gait
-/// that moves the legs of a side, so that one slider alone travels.
+/// The unequal robot with sliders at nominal in its neutral pose, and one gait that moves the legs of one side, so
+/// that only one slider moves.
 fn lean(right: bool, limits: &[(&str, String)]) -> Result<Robot, crate::Error> {
     let legs = if right {
         "LF = 0.0, LH = 0.0"
@@ -134,7 +134,7 @@ fn every_sample_of_every_servo_is_checked() {
 
 #[test]
 fn a_swing_backward_is_as_fast_as_one_forward() {
-    // All legs against their sense: no swing goes forward.
+    // All legs run with a negative gain, so their swings go backward.
     let against = "[gait.against]\nlike = \"walk\"\ngain = { LF = -1.0, RF = -1.0, RH = -1.0, LH = -1.0 }\n[gait.trot]";
     let robot = with("unequal", &[("[gait.trot]", against)]).expect("a gait");
     let speed = |name: &str| robot.gait(name).expect(name).audit().peak.speed;
@@ -174,7 +174,7 @@ fn a_gait_may_use_all_of_a_servos_travel() {
 
 #[test]
 fn every_end_of_every_travel_is_checked() {
-    // A servo that is left a degree on one side cannot walk.
+    // A servo with only about a degree of travel on one side cannot walk.
     for (servo, smallest, largest, neutral) in [
         ("A1", "min_us = 610.0", "max_us = 2350.0", 1470.0),
         ("A2", "min_us = 560.0", "max_us = 2420.0", 1535.0),
@@ -218,7 +218,7 @@ fn each_kind_of_margin_has_the_limit_of_its_kind() {
         };
         let smallest = unequal.gaits().iter().map(smallest).fold(1.0, f64::min);
         let limit = |value: f64| format!("{name} = {value:?} ");
-        // The firmware's guard is exact to a thousandth or two.
+        // The firmware's guard is accurate to one or two thousandths.
         assert!(
             with("unequal", &[(key, &limit(smallest - 0.003))]).is_ok(),
             "{name}"
@@ -231,8 +231,8 @@ fn each_kind_of_margin_has_the_limit_of_its_kind() {
 
 #[test]
 fn a_gait_that_only_the_firmwares_guard_rejects_is_refused() {
-    // Within a step or two of the integers above the gaits' least margin the float
-    // still agrees, and the guard of some robot does not.
+    // If the limit is only a step or two of the firmware's integers below the gaits' smallest margin, the
+    // floating-point check still accepts, but the guard of at least one robot refuses.
     let mut refusals = Vec::new();
     for (name, key) in [
         ("paper", "leg = 0.3 "),

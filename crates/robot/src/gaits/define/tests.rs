@@ -1,4 +1,4 @@
-//! Gaits as robot.toml may define them, and as it may not.
+//! Tests of valid and invalid gait definitions in robot.toml.
 
 use crate::testing::{body, robot};
 use crate::{Error, Robot};
@@ -62,7 +62,7 @@ fn a_mirror_exchanges_the_legs_and_its_gains_count_after_it() {
 fn an_order_gives_each_leg_its_turn() {
     let robot = robot("own-gaits");
     let creep = robot.gait("creep").expect("creep");
-    // RF, LH, LF, RH, each in a fifth after the first, in which all hold back.
+    // All legs move back in the first fifth; then RF, LH, LF and RH swing forward, each in one of the next fifths.
     for (leg, fifth) in [(1, 1), (3, 2), (0, 3), (2, 4)] {
         let sweeps = |phase: f64| creep.sweeps(phase)[leg];
         assert!((sweeps(0.2 * f64::from(fifth)) + 17.5).abs() < 1e-9);
@@ -140,7 +140,7 @@ fn a_name_may_have_48_characters() {
     );
 }
 
-/// The error of a robot that has too many bytes of gaits.
+/// The error of a robot whose gaits take too many bytes.
 const LEAVE_OUT: &str = "leave out gaits, first those whose waveform no other has";
 
 #[test]
@@ -157,7 +157,7 @@ fn a_robot_may_have_as_many_gaits_as_its_section_has_room_for() {
         many.gait("walk79").map(|gait| gait.table_sweeps(99)),
         many.gait("walk").map(|gait| gait.table_sweeps(99))
     );
-    // Also where there is no room for its maps of cells.
+    // This also holds if there is no room for the maps of cells.
     for count in 80..255 {
         match paper_with_gaits(&gaits(count)) {
             Ok(robot) => {
@@ -183,7 +183,7 @@ fn a_robot_may_have_as_many_gaits_as_its_section_has_room_for() {
 
 #[test]
 fn waveforms_are_refused_that_the_section_has_no_room_for() {
-    // Walking takes one, and each nod on a line of its own two.
+    // The walk takes one waveform, and each nod, along its own line, takes two.
     let gaits = |count: usize| {
         let nod = |i: usize| {
             let x = 0.03 * (i as f64 + 1.0);

@@ -5,38 +5,38 @@ use std::f64::consts::TAU;
 use lizard_core::numbers::units::TURN;
 use lizard_kinematics::Vector;
 
-/// Most divisions of a cell in four before it is given up. A bound over a cell is too wide by
-/// about the cell's size, so each division admits cells at half the distance from a limit.
+/// Largest number of successive divisions of a cell in four before it counts as not proven. A bound over a cell is
+/// too wide by about the cell's size, so each division certifies cells at half the distance from a limit.
 const DIVISIONS: u32 = 4;
 
-/// Allowance for the error of floating point, sines and mm; far more than it is.
+/// Allowance for floating-point errors, as a sine and in mm; far more than they are.
 pub(super) const HAIR: f64 = 1e-9;
 
-/// A range of one servo's angles in the chassis frame, 1/65536 turn.
+/// A range of one servo's angles in the chassis frame, in 1/65536 turn.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Span {
     pub low: f64,
     pub high: f64,
 }
 
-/// Ranges of the angles of a map's row and of its column.
+/// The ranges of two servos' angles: that of a map's row and that of its column.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cell(pub [Span; 2]);
 
 /// The result of judging a condition over a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Verdict {
-    /// The integers keep the condition at every pose.
+    /// The firmware's integers keep the condition at every pose.
     Kept,
     /// The centre of the cell breaks the condition.
     Broken,
-    /// The bounds are too wide to decide.
+    /// The bounds are too wide for a decision.
     Open,
 }
 
 /// A condition of the guard that depends on two servos.
 pub(super) trait Condition {
-    /// The servos of row and column, by their indices.
+    /// The indices of the servos of row and column.
     fn servos(&self) -> [usize; 2];
 
     /// Judges the condition over a cell.
@@ -54,7 +54,7 @@ impl Span {
         (self.high - self.low) / 2.0 * TAU / f64::from(TURN)
     }
 
-    /// Unit vector of the middle.
+    /// Unit vector at the middle of the span.
     pub fn direction(&self) -> Vector {
         Vector::direction(self.centre())
     }
@@ -75,7 +75,7 @@ impl Span {
 }
 
 impl Cell {
-    /// True if a condition is proved in all of the cell.
+    /// True if a condition is proven in the whole cell.
     pub fn proves(&self, condition: &impl Condition) -> bool {
         self.proves_within(condition, DIVISIONS)
     }

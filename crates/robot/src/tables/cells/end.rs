@@ -1,21 +1,19 @@
 //! The conditions of an end over a cell: its couplers, its elbows and its legs.
 //!
-//! While the crank angles go from the cell's centre to any other pose of it, the crank
-//! tips move by at most crank times angle, and so does the line `k` between them. Three
-//! bounds follow:
+//! While the crank angles go from the cell's centre to any other pose of the cell, the crank tips move by at most
+//! crank length times angle, and so does the line `k` between them. Three bounds follow:
 //!
-//! * The tips' distance is in a range, and so is the sine between the couplers, the
-//!   type-2 margin; [`bounds::End::least`] is its least value. The tips cannot cross if
-//!   they are farther apart along the base than they can move.
-//! * From `a u2 - b u3 = k`, the couplers of directions `u2` and `u3` over the line `k`,
-//!   the left one turns by at most `|dk| / (a sin(theta3 - theta2))`, the right one by as
-//!   much over `b`. Its crank turns by half the cell. So the type-1 margin, a sine, is
-//!   smaller than at the centre by at most the sum of both.
-//! * A leg's margin is the sine of its own crank angle, which is least at an end of its
-//!   range.
+//! * The tips' distance is in a range, and so is the sine between the couplers, the type-2 margin;
+//!   [`bounds::End::least`] is its smallest value. The tips cannot cross if their distance along the base is more
+//!   than they can move.
+//! * From `a u2 - b u3 = k`, with couplers of directions `u2` and `u3` over the line `k`: the left coupler turns by
+//!   at most `|dk| / (a sin(theta3 - theta2))`, and the right one by the same with `b` instead of `a`. The crank
+//!   turns by half the cell. So the type-1 margin, a sine, is smaller than at the centre by at most the sum of
+//!   both.
+//! * A leg's margin is the sine of its own crank angle, which is smallest at an end of its range.
 //!
-//! The integers' margins are smaller than that by at most their error bounds, and must
-//! still keep the integers' limits.
+//! The integers' margins are smaller than these by at most their error bounds, and must still keep the integers'
+//! limits.
 
 use lizard_core::guard::bounds::{self, DIRECTION};
 use lizard_core::numbers::limits::Limits;
@@ -54,11 +52,11 @@ impl EndConditions {
         }
     }
 
-    /// Least sine of a leg over its servo's range, which is less than half a turn.
+    /// Smallest sine of a leg over its servo's range, which is less than half a turn.
     fn least_leg(&self, span: &Span) -> f64 {
         let half = span.half();
         let Vector { x: cos, y: sin } = self.end.mirror(span.direction());
-        // The centre turned by half the range, either way.
+        // The centre, rotated by half the range in either direction.
         sin * half.cos() - cos.abs() * half.sin()
     }
 }
@@ -128,7 +126,7 @@ mod tests {
     use super::*;
     use crate::testing::robot;
 
-    /// The neutral pose of the head of a robot without symmetry, as a cell.
+    /// The neutral pose of the head of a robot without symmetry, as a cell, and its conditions without limits.
     fn standing() -> (EndConditions, Cell) {
         let robot = robot("unequal");
         let numbers = robot.content();
@@ -198,7 +196,7 @@ mod tests {
                 high: angle,
             }
         };
-        // Leaning far to the left, so that the tips pass well above one another.
+        // The right crank leans far to the left, so that the tips pass well above each other.
         let right = turn(165.0);
         let gap = |left: Span| {
             let left = left.direction();
@@ -207,7 +205,7 @@ mod tests {
                 .gap
                 .x
         };
-        // The angle of the left crank where the tips stand over one another.
+        // The left crank's angle at which one tip is directly above the other.
         let (mut apart, mut crossed) = (150.0, 10.0);
         assert!(gap(turn(apart)) > 0.0 && gap(turn(crossed)) < 0.0);
         for _ in 0..60 {

@@ -1,11 +1,10 @@
-//! The maps of cells in which the integer guard is proved to accept every pose.
+//! The maps of cells in which the integer guard is proven to accept every pose.
 //!
-//! The chip computes the distance of a pose from every hazard, and that takes most of a
-//! frame's time. Every condition depends on one servo or on the two of an end or of a side. So
-//! the poses that are far from every limit can be listed beforehand, in four maps over pairs of
-//! servos: [`lizard_core::numbers::cells`]. This module makes them from the robot's true measurements,
-//! with bounds over a whole cell and a bound of the integers' error. No pose is sampled, so the
-//! proof holds for every pose in a cell.
+//! On the chip, computing the distance of a pose from every hazard takes most of a frame's time. Every condition
+//! depends on one servo or on the two servos of an end or of a side. So the poses that are far from every limit can
+//! be listed in advance, in four maps over pairs of servos: [`lizard_core::numbers::cells`]. This module computes
+//! them from the robot's true lengths, with bounds over a whole cell and a bound of the integers' error. No pose is
+//! sampled, so the proof holds for every pose in a cell.
 
 mod cell;
 mod end;
@@ -22,7 +21,7 @@ use lizard_kinematics::{End, Lizard, Side};
 
 use cell::{Cell, Condition, Span};
 
-/// The maps of a robot. A pose is certified if all of them hold it.
+/// The maps of a robot. A pose is certified if all four contain it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CellMaps {
     /// Map of the head: rows A1, columns A2.
@@ -35,11 +34,11 @@ pub struct CellMaps {
     pub right: Map,
 }
 
-/// A row without a cell.
+/// A row without any cell.
 const NO_CELL: [i8; 2] = [1, 0];
 
 impl CellMaps {
-    /// Computes the maps from the true measurements and their integers.
+    /// Computes the maps from the true lengths and from the integers.
     pub(crate) fn new(lizard: &Lizard, numbers: &Content) -> Self {
         let end = |end: End| certify(&end::EndConditions::new(lizard, numbers, end), numbers);
         let side =
@@ -52,7 +51,7 @@ impl CellMaps {
         }
     }
 
-    /// True if a pose is certified, so that the guard accepts it.
+    /// True if a pose is certified, so the guard accepts it.
     pub fn contains(&self, pose: &Pose) -> bool {
         let [a1, a2, a3, a4] = pose.0;
         self.head.cells().contains(a1, a2)
@@ -62,7 +61,7 @@ impl CellMaps {
     }
 }
 
-/// Finds the cells in which a condition is proved.
+/// Finds the cells in which a condition is proven.
 fn certify(rule: &impl Condition, numbers: &Content) -> Map {
     let [row, column] = rule.servos().map(|servo| Servo {
         neutral: numbers.neutral[servo],
@@ -105,13 +104,13 @@ struct Servo {
 }
 
 impl Servo {
-    /// The cells that the servo's travel touches, of those that a map can hold.
+    /// The cells that the servo's travel touches, of those that a map can contain.
     fn cells(&self, bits: u32, allowed: RangeInclusive<i32>) -> RangeInclusive<i32> {
         let [min, max] = [self.travel.min, self.travel.max].map(|end| i32::from(end.0 >> bits));
         min.max(*allowed.start())..=max.min(*allowed.end())
     }
 
-    /// The chassis angles of a cell: of its first sweep to its last.
+    /// The chassis-frame angles of a cell, from its first sweep to its last.
     fn span(&self, cell: i32, bits: u32) -> Span {
         let first = f64::from(i32::from(self.neutral.0) + (cell << bits));
         Span {
@@ -121,7 +120,7 @@ impl Servo {
     }
 }
 
-/// The longest run of columns that keep a condition from the one nearest to neutral on.
+/// The contiguous run of columns that keep a condition, around the one of them that is nearest to neutral.
 fn certified_columns(columns: &RangeInclusive<i32>, is_kept: impl Fn(i32) -> bool) -> [i8; 2] {
     let mut outwards: Vec<i32> = columns.clone().collect();
     outwards.sort_by_key(|column| (2 * column + 1).abs());

@@ -10,7 +10,7 @@ fn a_line_that_is_too_long_is_refused_and_the_next_one_is_read() {
     assert_eq!(dialogue.say("stand"), "ok stand");
 }
 
-/// Lines that are refused, in whatever state the robot is.
+/// Lines that are refused in every state of the robot.
 const REFUSED: [&str; 9] = [
     "dance",
     "sway fast",

@@ -1,4 +1,4 @@
-//! A gait with a count, and what ends it before its time.
+//! Gaits with a count, and the events that end them early.
 
 use super::*;
 
@@ -83,7 +83,7 @@ fn a_low_supply_makes_a_count_take_longer_and_does_not_end_it() {
             .expect("an end")
     };
     let (full, slow) = (frames(None), frames(Some(4_400)));
-    // Without the frames in which it speeds up and brakes.
+    // An upper bound, since the frames of speeding up and braking hardly change.
     let most = full * 100 / u32::from(SLOW_PACE);
     assert!(
         slow > u32::midpoint(full, most) && slow < most,

@@ -13,7 +13,7 @@ fn frames(robot: &mut Dialogue) -> Vec<[u16; 4]> {
 /// Observes the effect of a line on a robot's pulses and calibration.
 fn observe_effect(line: &str) -> Effect {
     let mut walking = awake(Sample::paper());
-    // So `load` and `factory` change something.
+    // With these settings `load` and `factory` change something.
     for setting in ["trim 2 3", "save", "trim 1 5", "sway"] {
         assert!(walking.say(setting).starts_with("ok "), "{setting}");
         walking.run(60);

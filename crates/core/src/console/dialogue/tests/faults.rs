@@ -86,7 +86,7 @@ fn the_beginning_of_a_line_that_waits_for_as_long_as_deadman_says_is_no_command(
             gait,
             "{deadman} {wait} {printed:?}"
         );
-        // The next line is whole.
+        // The next line is valid.
         assert_eq!(dialogue.say("swing"), "ok swing", "{deadman} {wait}");
     }
 }

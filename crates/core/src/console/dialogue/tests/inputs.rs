@@ -39,7 +39,7 @@ fn set(dialogue: &mut Dialogue, input: Input, is_closed: bool) {
     dialogue.board.closed |= bit * u32::from(is_closed);
 }
 
-/// Presses for these frames and lets go; returns what the robot says meanwhile.
+/// Closes the contact for this many frames, then opens it; returns the lines printed meanwhile.
 fn press(dialogue: &mut Dialogue, input: Input, frames: u32) -> Vec<String> {
     set(dialogue, input, true);
     let lines = dialogue.run(frames);
@@ -47,7 +47,7 @@ fn press(dialogue: &mut Dialogue, input: Input, frames: u32) -> Vec<String> {
     lines
 }
 
-/// The name of the gait that moves the robot, or what it does instead.
+/// The name of the running gait, or the activity if it is not a gait.
 fn gait(dialogue: &Dialogue) -> String {
     match dialogue.motion().activity() {
         Activity::Gait(id) => dialogue.motion().robot().name(id).map(char::from).collect(),
@@ -233,7 +233,7 @@ fn a_wait_brakes_the_gait_before_it_within_the_slew_limit() {
     );
 }
 
-/// A robot in every wait of the patrol.
+/// Robots in each wait of the patrol.
 fn waiting() -> [Dialogue; 2] {
     let mut for_button = begun(0, &PATROL);
     for_button.run(100);

@@ -49,7 +49,7 @@ fn a_save_during_a_low_supply_is_refused_and_the_old_settings_stay() {
     supply(&mut dialogue, 4_400);
     let mut printed = Vec::new();
     for _ in 0..20 {
-        // Frames alone: main has no time for the memory.
+        // With one step per frame, the main loop has no time for the memory.
         dialogue.board.tick();
         dialogue.main.step(&mut dialogue.board);
     }
@@ -99,14 +99,14 @@ fn a_robot_that_rested_wakes_where_it_rested_and_then_stands_without_a_leap() {
             let widths = widths(&mut again);
             for (other, width) in widths.into_iter().enumerate() {
                 let expected = if other < servo { there.0[other].0 } else { 0 };
-                // The fifth frame wakes the next one.
+                // The fifth of these frames wakes `servo`.
                 assert!(width == expected || other == servo, "{servo} {other}");
             }
         }
     }
     again.run(200);
     assert_eq!(again.status("pose"), neutral());
-    // Having moved, it has forgotten where it rested.
+    // A robot that has moved no longer keeps the pose of its rest.
     let after = Dialogue::with(
         *Sample::odd(),
         again.board.memory.clone(),
@@ -121,8 +121,7 @@ fn the_pose_of_a_rest_is_forgotten_before_the_first_pulse() {
     dialogue.say("rest");
     assert_eq!(dialogue.board.memory.bytes()[128], 0xa5);
     dialogue.board.send(b"stand\r");
-    // The answer goes first; then main deals with the memory, long before the first
-    // servo wakes.
+    // The answer is written first; then the main loop writes the memory, long before the first servo wakes.
     dialogue.lines();
     assert_eq!(dialogue.board.memory.bytes()[128], 0xff);
     assert_eq!(dialogue.frame(), Pulses::default());

@@ -1,4 +1,4 @@
-//! Routines: steps one after another, and everything that ends them before their time.
+//! Routines: steps one after another, and every event that ends them early.
 
 use super::*;
 use crate::numbers::gaits::Step;
@@ -7,7 +7,7 @@ const CYCLES: u8 = Step::CYCLES;
 const FRAMES: u8 = Step::FRAMES;
 const REST: u8 = Step::REST;
 
-/// Steps for some cycles and for some time; two of `sway` in a row.
+/// Steps that last a number of cycles or a time; two of `sway` in a row.
 const STEPS: [(u8, &str, u16); 5] = [
     (FRAMES, "stand", 30),
     (CYCLES, "sway", 2),

@@ -1,4 +1,4 @@
-//! Commands in any order, at any time, to any robot.
+//! Random commands in any order and at any time, to random robots.
 
 use std::vec::Vec;
 

@@ -1,10 +1,9 @@
-//! A gait with a count goes so many cycles and then stands still.
+//! Gaits with a count: they run that many cycles and then stand still.
 
 use super::*;
 
-/// The cycles that a motion covers, from one standstill to its end, and the frames that it
-/// takes. A second count beside the motion's own: the sum of the phase's changes in each
-/// frame.
+/// Returns the cycles that a motion covers from a standstill to its end, and the frames that it takes. It counts
+/// independently of the motion, by adding the phase's change in each frame.
 fn cycles(motion: &mut Motion) -> (f64, u32) {
     let (mut covered, mut frames) = (0.0, 0);
     loop {
@@ -17,7 +16,7 @@ fn cycles(motion: &mut Motion) -> (f64, u32) {
             return (covered, frames);
         }
         if motion.is_moving() {
-            // The previous gait braked until here.
+            // The previous gait was braking until here.
             covered = 0.0;
         } else if was_cycling && motion.is_cycling() {
             let step = motion.phase().wrapping_sub(before) & (CYCLE - 1);

@@ -32,7 +32,7 @@ fn an_unsafe_frame_is_never_sent_and_the_last_safe_pose_is_held() {
         assert_eq!(motion.tick(), last.pulses(&motion.calibration));
         assert_eq!(motion.hazard(), hazard);
     }
-    // The reason is that of the frame that was not sent.
+    // The reported hazard is that of the frame that was not sent.
     let id = motion.robot.id("stray");
     let gait = motion.robot.gait(id);
     let reasons: Vec<Hazard> = (0..CYCLE)

@@ -1,4 +1,4 @@
-//! The change of the pulses to another calibration.
+//! Settling: the gradual change of the pulses to a new calibration.
 
 use super::*;
 use crate::numbers::units::Width;
@@ -10,7 +10,7 @@ fn every_servo_settles_as_fast_as_its_own_gain_allows_and_no_faster() {
     let before = motion.sent().0;
     let per_frame = f64::from(motion.robot.slew().per_frame);
     let steps = motion.calibration.map(|servo| {
-        // Cycles for a frame's turn, rounded down.
+        // CPU cycles per frame at the slew limit, rounded down.
         (per_frame * f64::from(servo.gain).abs() / 16_384.0).floor() as u16
     });
     for (index, step) in steps.iter().enumerate() {
@@ -41,7 +41,7 @@ fn every_servo_settles_as_fast_as_its_own_gain_allows_and_no_faster() {
 
 #[test]
 fn the_first_pulses_after_a_hang_repeat_the_last_ones_however_far_the_settings_differ() {
-    // The last pulses of the run before may never have begun: a reset came first.
+    // The last pulses before the hang may never have been sent, because the reset came first.
     let before = *Motion::standing().stance();
     let mut motion = Motion::new(*Sample::odd());
     for index in 0..4 {

@@ -1,4 +1,4 @@
-//! `lizard console replay`: a kept session printed, summed up and drawn.
+//! `lizard console replay`: prints, sums up and draws a recorded session.
 
 mod session;
 mod summary;

@@ -1,4 +1,4 @@
-//! A session that was read from its file: its events, frames and commands.
+//! A recorded session that was read from its file: its events, frames and commands.
 
 use lizard_robot::Robot;
 use simulated_uno::{CYCLES_PER_MS, CYCLES_PER_US};
@@ -9,20 +9,20 @@ use crate::simulate::sim::frame_log::FrameLog;
 use crate::simulate::sim::script::{Script, Step};
 use crate::simulate::sim::spans::{self, Span};
 
-/// Milliseconds of a frame.
+/// Length of a frame, ms.
 const FRAME_MS: u64 = 20;
-/// The longest gap in frames over which the last reported pose is assumed.
+/// Longest gap between reported poses, in frames, over which the earlier one is held.
 const HELD: usize = 50;
-/// Frames by which the robot's count and this machine's clock may differ. A line may
-/// come late; a simulated robot falls behind where the machine is too slow.
+/// Largest difference, in frames, between the robot's frame count and this machine's clock. A line may arrive late,
+/// and a simulated robot lags behind on a slow machine.
 const APART: usize = 10;
-/// The longest session that is drawn, a day.
+/// Longest valid session, ms: a day.
 const LONGEST_MS: u64 = 86_400_000;
 
 /// The reason why a file is not a valid session.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
 pub(super) enum SessionError {
-    /// The file is not a session, or one of another format.
+    /// The file is not a session, or has another format.
     #[error(
         "this is not a session of `lizard console --record`: its first line has no \"{FORMAT}\""
     )]
@@ -81,7 +81,7 @@ impl Session {
         Ok(Self { entries })
     }
 
-    /// The robot's first line.
+    /// The robot's first line of output, if it was recorded.
     pub(super) fn banner(&self) -> Option<&str> {
         match &self.entries.first()?.event {
             Event::Begin { banner, .. } => banner.as_deref(),
@@ -94,15 +94,15 @@ impl Session {
         self.entries.last().map_or(0, |last| last.ms)
     }
 
-    /// The pulses that make the poses, frame by frame since the session began: none
-    /// while the robot rested or was silent.
+    /// Pulse widths of the reported poses, one entry per frame since the start of the session; zero while the robot
+    /// rested or was silent.
     pub(super) fn frames(&self, robot: &Robot) -> FrameLog {
         let mut widths: Vec<[u16; 4]> = vec![[0; 4]; (self.end_ms() / FRAME_MS) as usize + 1];
         let mut resting = false;
-        // The robot's count of frames and our own, where they were compared last.
+        // The robot's frame count and our index at the last pose at which the two were matched.
         let mut begin: Option<(u64, usize)> = None;
         let mut count = 0;
-        // Our count of the last pose, unless the robot has rested or was reset since.
+        // Our index of the last pose; `None` if the robot has rested or was reset since.
         let mut last: Option<usize> = None;
         for entry in &self.entries {
             match &entry.event {
@@ -119,7 +119,7 @@ impl Session {
                         (begin, last) = (None, None);
                     }
                     count = *frame;
-                    // The robot's count is steadier than the time at which a line came.
+                    // The robot's count is steadier than the time at which a line arrives.
                     let counted = begin.and_then(|(first, at)| {
                         at.checked_add(usize::try_from(frame.checked_sub(first)?).ok()?)
                     });
@@ -263,7 +263,7 @@ mod tests {
             // A reset.
             pose(160, 0, 138.590378),
             pose(180, 1, 138.590378),
-            // No robot counts so far.
+            // A frame count that no robot reaches.
             pose(190, u64::MAX, 138.590378),
         ]);
         let log = session.frames(&named("paper"));

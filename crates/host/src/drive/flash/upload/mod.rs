@@ -1,17 +1,17 @@
 //! Writes an image to a board so that an interruption is never dangerous.
 //!
-//! A cable may be pulled at any moment, and the chip then starts whatever is in flash: half
-//! a program may drive the servos anywhere. So, before code is changed, the page where the chip
-//! starts becomes a loop that does nothing; pins then stay inputs, and servos get no pulses. The
-//! other pages are written and read back, and that first page comes last.
+//! A cable may be pulled at any moment, and the chip then starts whatever is in flash; half a program may drive the
+//! servos anywhere. So, before code is changed, the page where the program starts is replaced by a loop that does
+//! nothing: pins then stay inputs, and servos get no pulses. The other pages are written and read back, and that
+//! first page is written last.
 //!
-//! A robot alone is written in the same way: the first page of its section is made blank, and
-//! comes last. The firmware then finds either a valid robot or none, for which it has a fault and
-//! moves no servo. Since the code stays, it must be code that reads this robot: its mark
-//! ([`lizard_core::numbers::mark`]) is read before anything is written.
+//! A robot alone is written in the same way: the first page of its section is blanked first, and written last. The
+//! firmware then finds either a valid robot or none; without one it reports a fault and moves no servo. Since the
+//! code stays, it must be code that can read this robot: its mark ([`lizard_core::numbers::mark`]) is checked
+//! before anything is written.
 //!
-//! Pages that are right already are left alone: it saves time, and flash wears out (10 000 times,
-//! ATmega328P data sheet, "Features").
+//! Pages that are already right are not written: this saves time, and flash wears out (10 000 writes, ATmega328P
+//! data sheet, "Features").
 
 use std::fmt;
 use std::ops::Range;
@@ -25,10 +25,10 @@ use super::image::{BLANK, BOOT, Image, PAGE, Page};
 use super::stk500::{Board, Kind, Loader, LoaderError};
 use super::target::{Target, TooLong};
 
-/// The number of attempts, each after a reset: two at each speed if the board does not answer,
-/// or more if bytes were lost.
+/// Largest number of attempts, each after a reset. They alternate between the speeds of the boot loaders until one
+/// answers.
 const ATTEMPTS: usize = 4;
-/// The page where a robot's section begins.
+/// Index of the page where a robot's section begins.
 const ROBOT: usize = START as usize / PAGE;
 
 /// The operation on pages that is in progress.
@@ -47,7 +47,7 @@ pub enum Step {
 pub enum Event<'a> {
     /// The board's flash has been read; reported once.
     Found(FlashContents),
-    /// The number of finished pages, and of all.
+    /// The number of finished pages of a step, and of all its pages.
     Progress(Step, usize, usize),
     /// The board is reset for another attempt.
     Again {
@@ -72,7 +72,7 @@ pub struct Done {
 /// The reason why a board does not hold the image.
 #[derive(Debug, thiserror::Error)]
 pub enum UploadError {
-    /// No boot loader.
+    /// No boot loader answers.
     #[error(
         "no boot loader answers. Is it a UNO or a Nano? Has another program this port open? Is something \
          wired to D0 or D1? Where USB does not reset the board, press its button just after the \
@@ -82,12 +82,12 @@ pub enum UploadError {
     /// The chip is not that of a UNO.
     #[error("the chip is {0}; the firmware is for {uno}. Nothing was written", uno = Chip::ATMEGA328P)]
     Chip(Chip),
-    /// A robot alone, but the board has no code that reads one.
+    /// The image is a robot alone, but the board has no code that reads one.
     #[error(
         "{0}, and a robot alone moves nothing: write both, without --only-robot. Nothing was written"
     )]
     NoLizard(FlashContents),
-    /// A robot alone, but the board's code reads another format.
+    /// The image is a robot alone, but the board's code reads another format.
     #[error(
         "{found}, whose robots are of format {}; this program's are of format {FORMAT}. Write \
          both, without --only-robot. Nothing was written",
@@ -99,10 +99,10 @@ pub enum UploadError {
         /// The version mark of its code.
         mark: Mark,
     },
-    /// The image would reach into the boot section.
+    /// The image reaches into the boot section.
     #[error(transparent)]
     TooLong(#[from] TooLong),
-    /// A byte that was written twice does not have the new value.
+    /// A byte still has another value after it was written twice.
     #[error(
         "the flash does not keep the byte at address {address:#06x}: written {written:#04x}, read \
          {read:#04x}. The flash is worn out, or the supply too weak. {left}"
@@ -132,9 +132,9 @@ pub enum UploadError {
 pub enum FlashState {
     /// Flash holds its old contents.
     Unchanged,
-    /// The loop that does nothing, and a part of the code.
+    /// Flash holds the loop that does nothing, and a part of the code.
     HalfProgram,
-    /// The firmware, and no robot that it could move.
+    /// Flash holds the firmware, and no robot that it could move.
     HalfRobot,
 }
 
@@ -160,8 +160,8 @@ impl From<UploadError> for crate::Failure {
     }
 }
 
-/// Writes an image to a board, and starts it. Resets the board up to four times, where it does
-/// not answer or bytes are lost on the way.
+/// Writes an image to a board, and starts it. Resets the board up to four times if it does not answer or if bytes
+/// are lost.
 ///
 /// # Errors
 /// See [`UploadError`].
@@ -256,11 +256,11 @@ impl<B: Board> Upload<'_, B> {
             for page in &goal {
                 written[page.address / PAGE] = true;
             }
-            // The flash had other contents in between.
+            // The first page had other contents meanwhile, so it is written again.
             written[self.first_page().address / PAGE] = true;
             self.write_pages(goal, &flash)?;
         }
-        // Everything is written; the program starts after a second in any case.
+        // An error does not matter: everything is written, and the program starts after a second in any case.
         let _ = self.loader.leave();
         Ok(())
     }
@@ -272,7 +272,7 @@ impl<B: Board> Upload<'_, B> {
         pages.swap_remove(0)
     }
 
-    /// Writes pages: the first of the image comes last.
+    /// Writes pages. Blanks or idles the image's first page before the others, and writes it last.
     fn write_pages(&mut self, mut goal: Vec<Page>, flash: &[u8]) -> Result<(), Stop> {
         let first = self.first_page();
         let mut closed = [BLANK; PAGE];
@@ -290,8 +290,8 @@ impl<B: Board> Upload<'_, B> {
         self.write(&[first])
     }
 
-    /// Reads flash up to the boot loader and reports its contents. For a robot alone, the first
-    /// page is enough of the code.
+    /// Reads flash up to the boot loader and reports its contents. For a robot alone, reads only the first page of
+    /// the code.
     fn read_flash(&mut self, boot: usize) -> Result<Vec<u8>, Stop> {
         let mut flash = vec![BLANK; BOOT];
         if self.image.is_robot_alone() {
@@ -337,7 +337,7 @@ impl<B: Board> Upload<'_, B> {
         Ok(())
     }
 
-    /// Writes pages and reads them back. One that has changed on the way is written again.
+    /// Writes pages and reads them back. A page that does not read back as written is written once more.
     fn write(&mut self, pages: &[Page]) -> Result<(), Stop> {
         for (done, page) in pages.iter().enumerate() {
             self.write_page(page.address, &page.bytes)?;
@@ -378,8 +378,8 @@ impl<B: Board> Upload<'_, B> {
     }
 }
 
-/// The address at which the robot in a flash ends, according to its header. Only the first page
-/// of the robot is needed.
+/// The end address of the robot in flash, according to its header, or its start if the header is not valid. Needs
+/// only the first page of the robot.
 fn end_of_robot(flash: &[u8], boot: usize) -> usize {
     let start = usize::from(START);
     let header: Header = Region::new(&flash[start..]).read(0);
@@ -391,7 +391,7 @@ fn end_of_robot(flash: &[u8], boot: usize) -> usize {
     }
 }
 
-/// The first byte in which two pages differ.
+/// Index of the first byte in which two pages differ.
 fn difference(a: &[u8], b: &[u8]) -> Option<usize> {
     a.iter().zip(b).position(|(a, b)| a != b)
 }

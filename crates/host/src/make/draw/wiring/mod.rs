@@ -1,8 +1,7 @@
 //! `lizard draw --wiring`: every wire from the battery's cells to the servos and the board.
 //!
-//! The picture is laid out as the current flows: the supply at the top, the strip for +5 V on
-//! the left and the one for ground on the right, the servos between them, then the strip for
-//! the signals, and the board at the bottom.
+//! The picture follows the current: the supply at the top, the strip for +5 V on the left and the one for ground on
+//! the right, the servos between them, then the strip for the signals, and the board at the bottom.
 
 mod inputs;
 mod radio;
@@ -24,25 +23,25 @@ use crate::shared::ink::{
 use wire::{BLACK, THICK, THIN, Wire, end};
 
 const WIDTH: f64 = 700.0;
-/// The first servo's middle, the next one's distance; bodies' upper ends; their size.
+/// The servos on the page: middle of the first, distance to the next, upper end, and size.
 const FIRST: f64 = 170.0;
 const APART: f64 = 118.0;
 const TOP: f64 = 420.0;
 const BODY: (f64, f64) = (50.0, 92.0);
-/// The wires of the supply leave a servo this far from its middle.
+/// Distance from a servo's middle at which its supply wires leave it.
 const LEAD: f64 = 14.0;
-/// The highest sideways part of a signal above its strip, and below it.
+/// Heights of the uppermost horizontal parts of the signal wires, above their strip and below it.
 const LEVELS: [f64; 2] = [530.0, 694.0];
-/// The sideways parts of the ground of signals and board, below all others.
+/// Heights of the horizontal parts of the ground wires of signals and board, below all other wires.
 const GROUND_LEVELS: [f64; 2] = [582.0, 748.0];
-/// The wire from the ground strip to the signal strip goes down here.
+/// Position at which the wire from the ground strip to the signal strip goes down.
 const DOWN: f64 = 622.0;
 const UNO: Uno = Uno {
     corner: (120.0, 776.0),
 };
-/// The middle of the board's round socket, from its corner.
+/// The middle of the board's round power socket, relative to its corner.
 const SOCKET: (f64, f64) = (-11.0, 252.0);
-/// Distance of the lines of the remarks.
+/// Distance between the lines of the remarks.
 const LINE: f64 = 19.0;
 
 /// The wiring of a robot, as SVG text.
@@ -92,8 +91,8 @@ fn is_analogue(pin: u8) -> bool {
     pin >= 14
 }
 
-/// The servos from left to right, as their pins are met going round the UNO from its
-/// upper left: so no signal crosses another.
+/// The servos from left to right, in the order of their pins around the UNO from its upper left, so that no two
+/// signals cross.
 fn order(pins: [u8; 4]) -> [usize; 4] {
     let mut order = [0, 1, 2, 3];
     order.sort_by_key(|servo| {
@@ -107,7 +106,7 @@ fn middle(index: usize) -> f64 {
     FIRST + APART * index as f64
 }
 
-/// The wires of the servos, which stand in an order, and of their signals to the board.
+/// The wires of the servos, which are placed in this order, and of their signals to the board.
 fn servo_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
     let mut wires = Vec::new();
     for (index, servo) in order.into_iter().enumerate() {
@@ -115,7 +114,7 @@ fn servo_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
         let ground = strips::ground(supply::SERVOS + index);
         let brown = vec![(x + LEAD, TOP), (x + LEAD, ground.1), ground];
         wires.push(Wire::new(format!("ground-{name}"), brown, BROWN, THIN));
-        // The first ways are the converter's and the capacitor's.
+        // The first ways of the strip belong to the converter and the capacitor.
         let plus = strips::supply(strips::SUPPLIES - 1 - index);
         let red = vec![(x - LEAD, TOP), (x - LEAD, plus.1), plus];
         wires.push(Wire::new(format!("plus-{name}"), red, RED, THIN));
@@ -164,7 +163,7 @@ fn board_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
     wires
 }
 
-/// A servo from above; its names stand beside it.
+/// A servo from above, with its names.
 fn body(servo: usize, index: usize, pin: u8) -> Group {
     let x = middle(index);
     let colour = SERVO[servo];
@@ -193,7 +192,7 @@ fn body(servo: usize, index: usize, pin: u8) -> Group {
         .add(end(&format!("{name}-signal"), (x, TOP + BODY.1), ORANGE))
 }
 
-/// The cable to a computer, and the pin for 5 V, which stays free.
+/// The cable to a computer, and the 5V pin, which stays free.
 fn at_board() -> Group {
     let five = UNO.five_volts();
     let edge = UNO.far_corner().1;
@@ -205,7 +204,7 @@ fn at_board() -> Group {
         .add(text_start("computer", (42.0, usb - 12.0), 13.0))
 }
 
-/// Remarks that a drawing cannot show.
+/// Remarks about facts that a drawing cannot show.
 fn remarks(robot: &Robot) -> Vec<String> {
     let mut lines = vec![
         "Thick lines: wire of 0.5 mm\u{b2} (20 AWG), red or black. Thin lines: jumpers (26 AWG), a".to_string(),

@@ -1,8 +1,8 @@
-//! The option of a radio module beside the USB chip on the board's serial line.
+//! Wiring of an optional radio module that shares the board's serial line with the USB chip.
 //!
-//! Both talk to pin D0, and both hold it high when they are silent; the USB chip does so
-//! through 1 kOhm, so a module that is wired straight to D0 wins, and uploads fail. A diode
-//! lets the module only pull low. The module's input takes 3.3 V: a divider makes them.
+//! Both drive pin D0, and both hold it high while they are silent; the USB chip does so through 1 kOhm, so a module
+//! that is wired directly to D0 overrides it, and uploads fail. With a diode the module can only pull D0 low. The
+//! module's input takes 3.3 V, which a divider makes.
 
 use svg::node::element::{Group, Polygon};
 
@@ -12,16 +12,16 @@ use crate::shared::ink::{
     text_start,
 };
 
-/// Height of the panel.
+/// Height of the panel, px.
 pub const HEIGHT: f64 = 246.0;
-/// The board's pins and the module's.
+/// Horizontal positions of the board's pins and the module's.
 const BOARD: f64 = 120.0;
 const MODULE: f64 = 500.0;
-/// Diode, upper resistor and the divider's middle.
+/// Horizontal positions of the diode, the upper resistor and the divider's middle.
 const DIODE: f64 = 300.0;
 const UPPER: f64 = 260.0;
 const DIVIDED: f64 = 390.0;
-/// Rows below the panel's top: board's pin, module's pin.
+/// Rows: the board's pin, the module's pin, and the distance below the panel's top.
 const ROWS: [(&str, &str, f64); 4] = [
     ("D0 (RX)", "TXD", 64.0),
     ("D1 (TX)", "RXD", 102.0),
@@ -29,7 +29,7 @@ const ROWS: [(&str, &str, f64); 4] = [
     ("5V", "VCC", 182.0),
 ];
 
-/// The panel with its upper edge at a height.
+/// Draws the panel with its upper edge at this height.
 pub fn draw(top: f64) -> Group {
     let y = |row: usize| top + ROWS[row].2;
     let row = |row: usize, from: f64, to: f64| vec![(from, y(row)), (to, y(row))];
@@ -53,7 +53,7 @@ pub fn draw(top: f64) -> Group {
         )
         .set("font-weight", "bold"),
     );
-    // On its own ground these wires cross nothing, and a white edge would cut the frame.
+    // These wires cross nothing, and the white edge of `Wire::draw` would cut the frame.
     for wire in wires {
         let path = curve(&wire.path, wire.colour, wire.width);
         group = group.add(path.set("id", wire.name));
@@ -96,7 +96,7 @@ pub fn draw(top: f64) -> Group {
     group.add(text_start(words, (30.0, top + 220.0), 13.0))
 }
 
-/// A diode that lets current pass from left to right, with its stripe at the right.
+/// A diode that conducts from left to right, with its stripe at the right.
 fn draw_diode(group: Group, (x, y): (f64, f64)) -> Group {
     let corners = format!(
         "{},{} {},{} {},{}",

@@ -1,7 +1,7 @@
-//! Terminal strips and the links between their ways.
+//! Terminal strips, and the links between their ways (single terminals).
 //!
-//! A strip does not join its ways: each is a tube of brass with a screw at both ends. So on
-//! one side of a strip short links lead from way to way, and its wires are on the other side.
+//! A strip does not connect its ways: each is a brass tube with a screw at both ends. So short links lead from way
+//! to way on one side of a strip, and the wires are on the other side.
 
 use svg::node::element::Group;
 
@@ -21,13 +21,13 @@ pub const GROUNDS: usize = 10;
 const GROUND_WAYS: usize = 12;
 /// Ways of the strip for +5 V.
 pub const SUPPLIES: usize = 6;
-/// The inner edges of both strips, and the heights of their first ways.
+/// First holes for wires of the ground strip and of the +5 V strip: inner edge and height.
 const GROUND: (f64, f64) = (640.0, 160.0);
 const SUPPLY: (f64, f64) = (96.0, 259.0);
-/// The strip for the signals: its first way and their distance, its upper and lower ends.
+/// The signal strip: position of its first way, distance between ways, and its upper and lower ends.
 const SIGNALS: (f64, f64) = (265.0, 48.0);
 const SIGNALS_AT: (f64, f64) = (597.0, 633.0);
-/// From the middle of a way to the board's jumper in it, away from the middle way.
+/// Distance from the middle of a way to the board's jumper in it, away from the strip's middle way.
 const JUMPER: f64 = 5.0;
 
 /// The hole of a way of the ground strip, from 0, for a wire.
@@ -40,13 +40,13 @@ pub fn supply(way: usize) -> (f64, f64) {
     (SUPPLY.0, SUPPLY.1 + PITCH * way as f64)
 }
 
-/// The way of the signal strip for the servo at a place from left to right; the middle one is
-/// for ground.
+/// Index of the way of the signal strip for the servo at this place from left to right. The middle way is for
+/// ground.
 const fn way(index: usize) -> usize {
     if index < 2 { index } else { index + 1 }
 }
 
-/// The way for ground among those of the signals.
+/// Index of the ground way of the signal strip.
 const MIDDLE: usize = 2;
 
 fn signal_x(way: usize) -> f64 {
@@ -63,7 +63,7 @@ pub fn signal_ground() -> (f64, f64) {
     (signal_x(MIDDLE), SIGNALS_AT.0)
 }
 
-/// The hole of the signal strip for the jumper to the board.
+/// The hole of the signal strip for a jumper to the board.
 pub fn board(index: usize) -> (f64, f64) {
     let outward = if index < 2 { -JUMPER } else { JUMPER };
     (signal_x(way(index)) + outward, SIGNALS_AT.1)
@@ -92,7 +92,7 @@ pub fn links() -> Vec<Wire> {
     grounds.chain(supplies).collect()
 }
 
-/// The resistors from the signals of the servos, left to right, to the middle way: their legs.
+/// The legs of the resistors from the signals of the servos, left to right, to the middle way.
 pub fn resistors(names: [&str; 4]) -> Vec<Wire> {
     let resistor = |(index, name): (usize, &str)| {
         let (to_middle, inner) = match index {
@@ -127,7 +127,7 @@ pub fn resistor_bodies() -> Group {
         .add(text_start("own legs", (point.0, point.1 + 16.0), 12.0))
 }
 
-/// A way: its brass, its two screws and its number.
+/// A way: its brass tube and its number.
 fn draw_brass_strip(group: Group, from: (f64, f64), to: (f64, f64), number: usize) -> Group {
     let middle = ((from.0 + to.0) / 2.0, (from.1 + to.1) / 2.0);
     group

@@ -1,5 +1,5 @@
-//! From the cells of the battery to the strips: plug, fuse, switch, converter, capacitor,
-//! alarm, and the board's round plug.
+//! The supply, from the battery's cells to the strips: plug, fuse, switch, converter, capacitor, alarm, and the
+//! board's round plug.
 
 use lizard_robot::{FUSE, SWITCH};
 use svg::node::element::Group;
@@ -29,12 +29,12 @@ const WIRE_OFFSET: f64 = 5.0;
 const CONVERTER: [f64; 2] = [130.0, 235.0];
 const CONVERTER_IN_PLUS: f64 = PLUS - WIRE_OFFSET;
 const CONVERTER_MINUS: f64 = 104.0;
-/// The capacitor's place: x, and the heights of its legs.
+/// The capacitor's horizontal position.
 const CAPACITOR: f64 = 150.0;
-/// The x of the two wires that lead down to the round plug.
+/// Horizontal positions of the two wires that lead down to the round plug.
 const MARGINS: [f64; 2] = [20.0, 34.0];
 
-/// Ways of the ground strip, from 0.
+/// Ways of the ground strip for the parts of the supply, from 0.
 const GROUND_OF: [(&str, usize); 5] = [
     ("battery", 0),
     ("converter-in", 1),
@@ -171,7 +171,7 @@ fn draw_case(group: Group, corner: Point, size: Point, fill: &str) -> Group {
     group.add(edged(rectangle(corner, size, fill).set("rx", 5), DARK, 1.5))
 }
 
-/// Draws everything that the wires join.
+/// Draws all parts that the wires connect.
 pub fn draw(socket: Point) -> Group {
     let mut group = draw_battery(Group::new());
     group = draw_alarm(group);
@@ -239,7 +239,7 @@ fn draw_battery(group: Group) -> Group {
             DARK,
         ));
     }
-    // The plug that opens both wires.
+    // The plug that disconnects both wires.
     for y in [PLUS, MINUS] {
         group = group.add(edged(
             rectangle((534.0, y - 7.0), (9.0, 14.0), "#f0c808"),

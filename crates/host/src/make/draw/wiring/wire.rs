@@ -1,8 +1,7 @@
-//! A wire of the drawing, and the ends that it joins.
+//! A wire of the drawing, and the terminals that it connects.
 //!
-//! Wires have horizontal and vertical parts only. Each is drawn with a white edge, so where it
-//! passes over an earlier one there is a gap in that, so that the crossing does not look like a
-//! joint.
+//! Wires have horizontal and vertical parts only. Each is drawn with a white edge, which leaves a gap in an earlier
+//! wire where it crosses it. Without the gap the crossing would look like a joint.
 
 use svg::node::element::{Circle, Group};
 
@@ -14,8 +13,8 @@ pub const BLACK: &str = "#1b1b1b";
 /// The middle wire of a balance plug.
 pub const GREY_WIRE: &str = "#9a9a9a";
 
-/// Widths, pixels: a wire of 0.5 mm2, a thin jumper, and what comes with a component or the battery
-/// and is not bought as a wire.
+/// Widths, pixels: a wire of 0.5 mm2, a thin jumper (`THIN`), and a lead that belongs to a component or the battery
+/// and is not bought as a wire (`LEG`).
 pub const THICK: f64 = 4.5;
 /// See [`THICK`].
 pub const THIN: f64 = 2.8;

@@ -1,7 +1,6 @@
-//! The effect of an AVR instruction on the stack and on the flow of the program, for the few
-//! instructions that have one, by the AVR Instruction Set Manual.
+//! The effects of AVR instructions on the stack and on the flow of the program, by the AVR Instruction Set Manual.
 
-/// The effect of an instruction. Addresses are of bytes in flash.
+/// The effect of an instruction. Addresses count bytes of flash.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Effect {
     /// No effect on stack or flow.
@@ -19,15 +18,15 @@ pub enum Effect {
     Indirect,
     /// Enables interrupts: `sei`.
     EnableInterrupts,
-    /// r29:r28 gets the stack pointer (its low byte; the high one follows).
+    /// r29:r28 gets the stack pointer (this is its low byte; the high one follows).
     PointerFromStack,
-    /// The stack pointer gets r29:r28 (its low byte, written last).
+    /// The stack pointer gets r29:r28 (this is its low byte, which is written last).
     StackFromPointer,
     /// The stack pointer gets another value.
     StackFromOther,
     /// Adds a constant to r29:r28.
     AddToPointer(i16),
-    /// The low half of a 16-bit subtraction from it: `subi r28`.
+    /// The low half of a 16-bit subtraction from r29:r28: `subi r28`.
     SubtractLow(u8),
     /// The high half: `sbci r29` or `sbc r29`.
     SubtractHigh(u8),
@@ -36,7 +35,7 @@ pub enum Effect {
     LoadHigh(u8),
     /// r29:r28 gets another value.
     LosePointer,
-    /// `ldi r26`: how much room a shared beginning or end is about.
+    /// `ldi r26`: the frame size that a shared prologue or epilogue gets.
     LoadRoom(u8),
 }
 
@@ -53,7 +52,7 @@ const SPL: u16 = 0x3d;
 const SPH: u16 = 0x3e;
 const SP_DATA: [u16; 2] = [0x5d, 0x5e];
 
-/// The instruction at a byte address; `None` if flash ends there.
+/// Decodes the instruction at a byte address; `None` if flash ends there.
 pub fn decode(flash: &[u8], address: u32) -> Option<Instruction> {
     let code = word(flash, address)?;
     let is_long = code & 0xfe0f == 0x9000 // lds
@@ -116,7 +115,7 @@ fn effect(code: u16, second: u16, address: u32) -> Effect {
         // adiw and sbiw of r29:r28
         _ if code & 0xff30 == 0x9620 => Effect::AddToPointer(small_constant(code)),
         _ if code & 0xff30 == 0x9720 => Effect::AddToPointer(-small_constant(code)),
-        // subi, sbci and ldi know r16 to r31 only
+        // subi, sbci and ldi have r16 to r31 only
         _ if code & 0xf0f0 == 0x50c0 => Effect::SubtractLow(byte(code)),
         _ if code & 0xf0f0 == 0x40d0 => Effect::SubtractHigh(byte(code)),
         0x09d1 => Effect::SubtractHigh(0), // sbc r29, r1, which is always 0
@@ -128,13 +127,13 @@ fn effect(code: u16, second: u16, address: u32) -> Effect {
     }
 }
 
-/// The target of `jmp` and `call`: 22 bits, of words.
+/// The target of `jmp` and `call`: 22 bits, which count words.
 fn far_target(code: u16, second: u16) -> u32 {
     let high = u32::from(code >> 3 & 0x3e | code & 1);
     (high << 16 | u32::from(second)) * 2
 }
 
-/// A target relative to the next instruction, in words of this many bits with a sign.
+/// A target relative to the next instruction: a signed number of words with this many bits.
 fn relative_target(offset: u16, bits: u32, address: u32) -> u32 {
     let shift = 16 - bits;
     let words = (offset << shift) as i16 >> shift;
@@ -153,7 +152,7 @@ fn small_constant(code: u16) -> i16 {
     (code >> 2 & 0x30 | code & 0x0f) as i16
 }
 
-/// The constant of `ldi` and its like.
+/// The constant of `ldi` and similar instructions.
 fn byte(code: u16) -> u8 {
     (code >> 4 & 0xf0 | code & 0x0f) as u8
 }

@@ -10,11 +10,10 @@
 //! instructions matter to the stack, which takes fewer lines than a parser of that
 //! listing, and the program needs no other tool.
 //!
-//! The bound assumes the following. Interrupts do not nest, which is checked; only during
-//! a handler that never returns, as the watchdog's, may one more come. No function calls
-//! itself, nothing jumps to a computed address, and the stack pointer changes by `push`,
-//! `pop`, calls, returns, and frames that r28 and r29 point to. Anything else is refused,
-//! with the name of the function.
+//! The bound assumes the following. Interrupts do not nest, which is checked; only a handler that never returns,
+//! such as the watchdog's, may be interrupted once more. No function calls itself, nothing jumps to a computed
+//! address, and the stack pointer changes only by `push`, `pop`, calls, returns, and frames that r28 and r29 point
+//! to. Anything else is refused, with the name of the function.
 
 mod instruction;
 mod walk;
@@ -25,18 +24,18 @@ use walk::{Context, Walk};
 
 /// Vectors of an ATmega328P, reset included, each a `jmp` of four bytes.
 const VECTORS: u32 = 26;
-/// An interrupt pushes the address that it returns to.
+/// Bytes that an interrupt pushes: its return address.
 const ENTRY: u16 = 2;
 
 /// The reason why a depth cannot be computed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("the depth of the stack cannot be computed: {function}, at {address:#06x}, {what}")]
 pub struct StackError {
-    /// The function that stands in the way.
+    /// The function that cannot be analysed.
     pub function: String,
     /// Byte address of its instruction in flash.
     pub address: u32,
-    /// The instruction's effect, in words.
+    /// The reason why that instruction cannot be analysed, in words.
     pub what: &'static str,
 }
 
@@ -90,8 +89,8 @@ impl StackDepth {
         })
     }
 
-    /// The deepest of all: on top of main at its deepest an interrupt, or one that never
-    /// returns and another.
+    /// The deepest stack of all: main at its deepest, on top of it the interrupt that never returns, if there is
+    /// one, and another interrupt.
     pub fn worst(&self) -> u16 {
         self.main + self.last + self.handler
     }

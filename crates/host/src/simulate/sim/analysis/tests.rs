@@ -1,4 +1,4 @@
-//! Hand-made frames and the figures computed from them.
+//! Tests with hand-made frames, and the figures computed from them.
 
 use super::*;
 
@@ -6,7 +6,7 @@ fn robot() -> Robot {
     crate::shared::robot_file::named("paper")
 }
 
-/// The frames that servos of `angles(seconds)` would get, from second 1 on.
+/// Frames with the pulses for `angles(seconds)`; the first one is at 1 s.
 fn frames_of(robot: &Robot, count: u64, angles: impl Fn(f64) -> [f64; 4]) -> FrameLog {
     let width = |i: usize, angle: f64| (robot.servos()[i].pulse(angle) * 16.0).round() as u16;
     let frame = |n: u64| {

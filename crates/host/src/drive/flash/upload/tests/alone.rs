@@ -1,4 +1,4 @@
-//! A robot that is written alone, after the code that the board has.
+//! A robot that is written alone, while the board keeps its code.
 
 use super::*;
 use crate::drive::console::double::PAPER;
@@ -32,7 +32,7 @@ fn a_gait_that_changes_costs_less_than_a_second_of_the_line() {
     );
     let done = run.result.expect("it is written");
     assert!((1..=3).contains(&done.written), "{done:?}");
-    // Ten bits a byte.
+    // A byte takes ten bits on the line.
     let seconds = (run.board.received + run.board.sent) as f64 * 10.0 / 115_200.0;
     assert!((0.2..0.6).contains(&seconds), "{seconds} s");
 }
@@ -112,7 +112,7 @@ fn a_robot_alone_is_refused_if_the_code_on_the_board_cannot_read_it() {
         refused(&|board| board.flash[..BOOT].fill(0xff)),
         format!("the board has no program, and {reason}")
     );
-    // Another sketch, shorter than the firmware, most of which is still there.
+    // Another sketch, shorter than the firmware; the rest of the firmware is still there.
     assert_eq!(
         refused(&|board| board.flash[..1000].fill(0x95)),
         format!("the board has another program, and {reason}")
