@@ -7,4 +7,4 @@ use lizard_core::numbers::mark::{LENGTH, Mark};
 #[used]
 #[unsafe(no_mangle)]
 #[unsafe(link_section = ".progmem.gcc.mark")]
-static MARK: [u8; LENGTH] = Mark::HERE.bytes();
+static MARK: [u8; LENGTH] = Mark::OWN.bytes();

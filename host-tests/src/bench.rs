@@ -60,7 +60,7 @@ impl FirmwareBench {
     /// See [`FirmwareBench::boot`].
     pub fn boot_with(fidelity: Fidelity) -> Self {
         let board = SimulatedBoard::boot(&Self::elf(), fidelity, robot());
-        Self(done(board))
+        Self(or_panic(board))
     }
 
     /// Powers the board on and runs no cycle yet.
@@ -82,7 +82,7 @@ impl FirmwareBench {
     /// # Panics
     /// If no answer comes.
     pub fn say(&mut self, line: &str) -> String {
-        done(self.0.say(line))
+        or_panic(self.0.say(line))
     }
 
     /// Sends a line and returns its notes and its answer: see [`SimulatedBoard::ask`].
@@ -90,7 +90,7 @@ impl FirmwareBench {
     /// # Panics
     /// If no answer comes.
     pub fn ask(&mut self, line: &str) -> (Vec<String>, String) {
-        done(self.0.ask(line))
+        or_panic(self.0.ask(line))
     }
 
     /// Runs the firmware for some milliseconds: see [`SimulatedBoard::run_ms`].
@@ -98,7 +98,7 @@ impl FirmwareBench {
     /// # Panics
     /// If the firmware crashes, halts or is reset meanwhile.
     pub fn run_ms(&mut self, ms: u64) {
-        done(self.0.run_ms(ms));
+        or_panic(self.0.run_ms(ms));
     }
 
     /// Times the calls of a function: see [`SimulatedBoard::time_calls`].
@@ -106,7 +106,7 @@ impl FirmwareBench {
     /// # Panics
     /// If the ELF has no such function, or more than one.
     pub fn time_calls(&mut self, function: &str, ms: u64) -> Vec<Call> {
-        done(self.0.time_calls(function, ms))
+        or_panic(self.0.time_calls(function, ms))
     }
 
     /// Runs the firmware for some frames and returns them: see [`SimulatedBoard::run_for_frames`].
@@ -114,7 +114,7 @@ impl FirmwareBench {
     /// # Panics
     /// If the firmware crashes, halts or is reset meanwhile.
     pub fn run_for_frames(&mut self, count: u64) -> Vec<Frame> {
-        done(self.0.run_for_frames(count))
+        or_panic(self.0.run_for_frames(count))
     }
 }
 
@@ -132,7 +132,7 @@ impl DerefMut for FirmwareBench {
     }
 }
 
-fn done<T>(result: Result<T, BoardError>) -> T {
+fn or_panic<T>(result: Result<T, BoardError>) -> T {
     result.unwrap_or_else(|error| panic!("{error}"))
 }
 

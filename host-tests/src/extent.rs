@@ -6,7 +6,7 @@ use std::num::NonZeroU64;
 ///
 /// # Panics
 /// If `LIZARD_FUZZ` is not a whole number of at least 1.
-pub fn times(count: u64) -> u64 {
+pub fn scaled(count: u64) -> u64 {
     count * number("LIZARD_FUZZ", 1)
 }
 

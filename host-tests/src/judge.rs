@@ -45,7 +45,7 @@ impl fmt::Display for PinPulse {
 
 /// The recorded outputs of one simulator in a run from power-on.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Account {
+pub struct Outputs {
     /// The complete pulses of all pins, in the order of their ends.
     pub pulses: Vec<PinPulse>,
     /// The bytes that the UNO sent, each with the cycle at which its stop bit ends.
@@ -54,7 +54,7 @@ pub struct Account {
     pub end: u64,
 }
 
-impl Account {
+impl Outputs {
     /// Collects the outputs of a simulated UNO from its records since power-on.
     pub fn new(edges: &[Edge], sent: &[SerialByte], end: u64) -> Self {
         let mut rises = [None; 20];
@@ -81,9 +81,9 @@ impl Account {
 
 /// The result of a run on avr8js, and its cost.
 #[derive(Debug, Clone, Default)]
-pub struct Verdict {
+pub struct Avr8jsRun {
     /// The firmware's outputs in the run.
-    pub account: Account,
+    pub account: Outputs,
     /// The 1024 bytes of EEPROM at the end.
     pub eeprom: Vec<u8>,
     /// Processor time of the simulation, ms.
@@ -95,12 +95,12 @@ pub struct Verdict {
 ///
 /// # Errors
 /// Returns a message that names a missing program, or a feature that avr8js cannot simulate.
-pub fn judge(
+pub fn run_on_avr8js(
     image: &Image,
     received: &[SerialByte],
     end: u64,
     robot: &Robot,
-) -> Result<Verdict, String> {
+) -> Result<Avr8jsRun, String> {
     let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
     let hex = folder.path().join("firmware.hex");
     let flash = folder.path().join("firmware.bin");
@@ -131,7 +131,7 @@ pub fn judge(
 ///
 /// # Errors
 /// Fails if a program is missing or a test fails.
-pub fn own_tests() -> Result<String, String> {
+pub fn run_own_tests() -> Result<String, String> {
     let folder = judge_folder().join("test");
     let files = std::fs::read_dir(&folder).map_err(|error| error.to_string())?;
     let paths = files.filter_map(|file| Some(file.ok()?.path()));
@@ -173,8 +173,8 @@ fn run_program(command: &mut Command, debian: &str, input: &str) -> Result<Strin
 }
 
 /// Parses the output of tools/judge/run.js, whose head explains the lines.
-fn read(printed: &str) -> Option<Verdict> {
-    let mut verdict = Verdict::default();
+fn read(printed: &str) -> Option<Avr8jsRun> {
+    let mut verdict = Avr8jsRun::default();
     for line in printed.lines() {
         let words: Vec<&str> = line.split(' ').collect();
         match words[..] {
@@ -236,11 +236,11 @@ impl fmt::Display for Agreement {
 /// # Errors
 /// Returns a message about the first difference.
 pub fn compare_pulses(
-    simavr: &Account,
-    avr8js: &Account,
+    simavr: &Outputs,
+    avr8js: &Outputs,
     servos: &[Pin],
 ) -> Result<Agreement, String> {
-    let of_servos = |account: &Account| -> Vec<PinPulse> {
+    let of_servos = |account: &Outputs| -> Vec<PinPulse> {
         let pulses = account.pulses.iter().copied();
         pulses.filter(|pulse| servos.contains(&pulse.pin)).collect()
     };
@@ -282,7 +282,7 @@ pub fn compare_pulses(
 ///
 /// # Errors
 /// Returns a message about the first difference.
-pub fn compare_console(simavr: &Account, avr8js: &Account) -> Result<Agreement, String> {
+pub fn compare_console(simavr: &Outputs, avr8js: &Outputs) -> Result<Agreement, String> {
     let (Some(first), Some(other)) = (simavr.sent.first(), avr8js.sent.first()) else {
         return Err("one of them is silent".into());
     };

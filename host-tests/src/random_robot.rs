@@ -241,10 +241,10 @@ fn rail(rng: &mut Rng, pins: &[&'static str]) -> String {
 }
 
 /// A function that returns a gait's text for a size from 0 to 1; some gaits ignore the size.
-type Sized = Box<dyn Fn(f64) -> String>;
+type GaitOfSize = Box<dyn Fn(f64) -> String>;
 
 /// Returns gaits of every kind.
-fn gaits(rng: &mut Rng, body: &Body) -> Vec<Sized> {
+fn gaits(rng: &mut Rng, body: &Body) -> Vec<GaitOfSize> {
     let mut gaits = Vec::new();
     let period = |rng: &mut Rng| round(random_between(rng, 0.7, 3.0));
     let legs = |values: [f64; 4]| {
@@ -276,7 +276,7 @@ fn gaits(rng: &mut Rng, body: &Body) -> Vec<Sized> {
     for wavy in [wave, held] {
         gaits.push(Box::new(move |size| {
             format!("{wavy}\namplitude = {}", round_factor(30.0 * size))
-        }) as Sized);
+        }) as GaitOfSize);
     }
     gaits.push(Box::new(|_| "[gait.retreat]\nreverse = \"wander\"".into()));
     gaits.push(Box::new(|_| "[gait.advance]\nreverse = \"retreat\"".into()));
@@ -314,7 +314,7 @@ fn gaits(rng: &mut Rng, body: &Body) -> Vec<Sized> {
 
 /// Returns the text of a robot with one more gait, as large as the robot allows, or without the gait if even a
 /// small one is rejected.
-fn with_allowed_gait(text: String, gait: &Sized) -> String {
+fn with_allowed_gait(text: String, gait: &GaitOfSize) -> String {
     [1.0, 0.6, 0.35, 0.2, 0.1, 0.05]
         .into_iter()
         .map(|size| format!("{text}{}\n", gait(size)))

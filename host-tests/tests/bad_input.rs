@@ -10,7 +10,7 @@ use fastrand::Rng;
 use lizard_core::memory::record::CONTENT;
 use lizard_core::virtual_board::Eeprom;
 use lizard_fuzz::Board;
-use lizard_host_tests::{robot, times};
+use lizard_host_tests::{robot, scaled};
 
 #[path = "firmware/lines.rs"]
 mod lines;
@@ -26,7 +26,7 @@ fn in_parts(part: impl Fn(&mut Rng, u64) + Sync) {
     thread::scope(|scope| {
         let run = |n| {
             let part = &part;
-            scope.spawn(move || part(&mut lizard_host_tests::rng(1000 + n), times(COUNT) / PARTS))
+            scope.spawn(move || part(&mut lizard_host_tests::rng(1000 + n), scaled(COUNT) / PARTS))
         };
         let parts: Vec<_> = (0..PARTS).map(run).collect();
         for part in parts {

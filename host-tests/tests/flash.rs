@@ -7,7 +7,7 @@
 mod desk;
 mod shell;
 
-use desk::{BOOT, Desk};
+use desk::{BOOT_LOADER_START, Desk};
 use lizard_host::sim::frame::{frames, servo_pins};
 use lizard_host_tests::{FRAME, FirmwareBench, Frame, robot};
 use lizard_time_limit::LIMIT;
@@ -24,7 +24,7 @@ fn make_flash(desk: &Desk) -> Shell {
 /// Runs the board for a number of frames.
 fn run_frames(desk: &mut Desk, count: u64) {
     let end = desk.uno.cycle() + count * FRAME;
-    let passed = desk.until(|uno| uno.cycle() > end);
+    let passed = desk.run_until(|uno| uno.cycle() > end);
     assert!(passed, "waited {LIMIT} for {count} frames");
 }
 
@@ -32,7 +32,7 @@ fn run_frames(desk: &mut Desk, count: u64) {
 fn make_flash_writes_the_image_and_the_robot_walks() {
     let mut desk = Desk::with_a_new_board();
     let mut shell = make_flash(&desk);
-    desk.see(&shell, "# lizard");
+    desk.wait_for_text(&shell, "# lizard");
     let screen = shell.screen();
     assert!(screen.contains("bytes of flash verified"), "{screen}");
 
@@ -42,10 +42,10 @@ fn make_flash_writes_the_image_and_the_robot_walks() {
 
     // All four servos awake, then two steps.
     shell.say("stand");
-    desk.see(&shell, "ok stand");
+    desk.wait_for_text(&shell, "ok stand");
     run_frames(&mut desk, AWAKE_FRAMES);
     shell.say("walk");
-    desk.see(&shell, "ok walk");
+    desk.wait_for_text(&shell, "ok walk");
     desk.edges.clear();
     run_frames(&mut desk, 110);
     let pins = servo_pins(robot());
@@ -83,7 +83,7 @@ fn an_upload_keeps_the_eeprom() {
     desk.uno.set_eeprom(&kept);
     let mut shell = make_flash(&desk);
     // Checked before the firmware can write a byte of its own.
-    desk.see(&shell, "bytes of flash verified");
+    desk.wait_for_text(&shell, "bytes of flash verified");
     assert!(
         desk.uno.eeprom() == kept,
         "the upload has changed the EEPROM"
@@ -95,16 +95,16 @@ fn an_upload_keeps_the_eeprom() {
 fn a_saved_calibration_is_in_effect_after_the_next_upload() {
     let mut desk = Desk::with_a_new_board();
     let mut shell = make_flash(&desk);
-    desk.see(&shell, "# lizard");
+    desk.wait_for_text(&shell, "# lizard");
     for line in ["trim 1 3", "deadman 700", "save"] {
         shell.say(line);
-        desk.see(&shell, &format!("ok {line}"));
+        desk.wait_for_text(&shell, &format!("ok {line}"));
     }
     shell.interrupt();
     let mut shell = make_flash(&desk);
-    desk.see(&shell, "# lizard");
+    desk.wait_for_text(&shell, "# lizard");
     shell.say("cal");
-    desk.see(&shell, "ok cal");
+    desk.wait_for_text(&shell, "ok cal");
     let screen = shell.screen();
     assert!(screen.contains("# A1 trim 3.00 "), "{screen}");
     assert!(screen.contains("# deadman 700"), "{screen}");
@@ -117,7 +117,7 @@ fn a_byte_that_the_flash_does_not_keep_ends_the_upload() {
     let shell = make_flash(&desk);
     let mut is_worn = false;
     // Once the image's first page is written, one bit of it changes.
-    let ended = desk.until(|uno| {
+    let ended = desk.run_until(|uno| {
         if !is_worn && uno.flash()[0x100] != 0xff {
             uno.set_flash(0x11, &[uno.flash()[0x11] ^ 0x10]);
             is_worn = true;
@@ -136,9 +136,13 @@ fn a_byte_that_the_flash_does_not_keep_ends_the_upload() {
 fn a_board_that_never_answers_ends_the_upload_with_an_explanation() {
     let mut desk = Desk::with_a_new_board();
     // A boot loader that does nothing: `rjmp .-2`.
-    desk.uno.set_flash(BOOT as u16, &[0xff, 0xcf]);
+    desk.uno.set_flash(BOOT_LOADER_START as u16, &[0xff, 0xcf]);
     let shell = make_flash(&desk);
-    let screen = desk.end(&shell);
+    let screen = desk.run_until_exit(&shell);
     assert!(screen.contains("the board does not answer"), "{screen}");
-    assert!(desk.uno.flash()[..BOOT].iter().all(|&byte| byte == 0xff));
+    assert!(
+        desk.uno.flash()[..BOOT_LOADER_START]
+            .iter()
+            .all(|&byte| byte == 0xff)
+    );
 }

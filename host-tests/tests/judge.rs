@@ -5,7 +5,7 @@ use std::thread;
 
 use lizard_host::sim::frame::servo_pins;
 use lizard_host_tests::judge::{
-    AVR8JS_LAG, Account, PinPulse, compare_console, compare_pulses, judge, own_tests,
+    AVR8JS_LAG, Outputs, PinPulse, compare_console, compare_pulses, run_on_avr8js, run_own_tests,
 };
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin, SerialByte};
@@ -25,7 +25,7 @@ fn gaits() -> Vec<String> {
 
 /// The tolerance in time between two consoles with the same output.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Apart {
+enum TimeTolerance {
     /// Two cycles: two interrupts may delay main before a byte, and each may come one
     /// cycle later in one simulator than in the other.
     Cycles,
@@ -43,12 +43,17 @@ enum Apart {
 const TURN: u64 = 20_000;
 
 /// Runs avr8js on the bytes that the bench has received, and compares pulses, console and EEPROM.
-fn check_agreement(bench: &mut FirmwareBench, what: &str, apart: Apart) {
+fn check_agreement(bench: &mut FirmwareBench, what: &str, apart: TimeTolerance) {
     let end = bench.uno.cycle();
     let edges = bench.uno.edges();
-    let simavr = Account::new(&edges, bench.bytes(), end);
+    let simavr = Outputs::new(&edges, bench.bytes(), end);
     let received = bench.uno.received_by_uno();
-    let verdict = done(judge(&FirmwareBench::image(), &received, end, robot()));
+    let verdict = done(run_on_avr8js(
+        &FirmwareBench::image(),
+        &received,
+        end,
+        robot(),
+    ));
     let pulses = compare_pulses(&simavr, &verdict.account, &servo_pins(robot()));
     let pulses = pulses.unwrap_or_else(|difference| panic!("{what}: {difference}"));
     assert_eq!(
@@ -56,9 +61,9 @@ fn check_agreement(bench: &mut FirmwareBench, what: &str, apart: Apart) {
         "{what}: the pulses' cycle in the slot"
     );
     let limit = match apart {
-        Apart::Cycles => Some(2),
-        Apart::Turn => Some(TURN),
-        Apart::Any => None,
+        TimeTolerance::Cycles => Some(2),
+        TimeTolerance::Turn => Some(TURN),
+        TimeTolerance::Any => None,
     };
     if let Some(limit) = limit {
         let console = compare_console(&simavr, &verdict.account);
@@ -94,7 +99,7 @@ fn two_simulators_agree_about_every_pulse_of_every_gait() {
     }
     bench.say("stop");
     bench.run_ms(500);
-    check_agreement(&mut bench, "all gaits", Apart::Cycles);
+    check_agreement(&mut bench, "all gaits", TimeTolerance::Cycles);
 }
 
 #[test]
@@ -114,7 +119,11 @@ fn two_simulators_agree_about_saved_settings() {
         written > 100,
         "both calibrations and a pose are kept: {written} bytes"
     );
-    check_agreement(&mut bench, "two calibrations and a pose", Apart::Turn);
+    check_agreement(
+        &mut bench,
+        "two calibrations and a pose",
+        TimeTolerance::Turn,
+    );
 }
 
 #[test]
@@ -123,11 +132,11 @@ fn two_simulators_agree_under_a_saturated_line() {
     let moving = moving.unwrap_or_else(|| "stand".into());
     // No command that moves: bytes of a flood are lost, and each simulator would obey other commands.
     let floods = [
-        ("status\n", Apart::Any),
-        ("help\n", Apart::Any),
-        ("?\r", Apart::Any),
-        ("x", Apart::Turn),
-        ("\0\u{7f}\u{8}\n", Apart::Turn),
+        ("status\n", TimeTolerance::Any),
+        ("help\n", TimeTolerance::Any),
+        ("?\r", TimeTolerance::Any),
+        ("x", TimeTolerance::Turn),
+        ("\0\u{7f}\u{8}\n", TimeTolerance::Turn),
     ];
     thread::scope(|scope| {
         for (flood, apart) in floods {
@@ -149,7 +158,7 @@ fn two_simulators_agree_under_a_saturated_line() {
 
 #[test]
 fn the_known_faults_of_avr8js_still_exist_and_are_corrected() {
-    done(own_tests());
+    done(run_own_tests());
 }
 
 fn pulse(rise: u64, width: u64) -> PinPulse {
@@ -157,9 +166,9 @@ fn pulse(rise: u64, width: u64) -> PinPulse {
     PinPulse { pin, rise, width }
 }
 
-fn account(pulses: &[PinPulse], text: &str) -> Account {
+fn account(pulses: &[PinPulse], text: &str) -> Outputs {
     let sent = text.bytes().map(|byte| SerialByte { cycle: 0, byte });
-    Account {
+    Outputs {
         pulses: pulses.to_vec(),
         sent: sent.collect(),
         end: 10_000_000,

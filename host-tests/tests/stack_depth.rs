@@ -210,7 +210,10 @@ fn a_handler_that_lets_others_in_forever_lies_below_the_deepest_of_them() {
     stay: rjmp stay",
     );
     let depth = depth(&image);
-    assert_eq!((depth.main, depth.handler, depth.last), (0, 2 + 3, 2 + 1));
+    assert_eq!(
+        (depth.main, depth.handler, depth.final_handler),
+        (0, 2 + 3, 2 + 1)
+    );
     assert_eq!(depth.worst(), 8);
 }
 

@@ -92,7 +92,7 @@ impl Board for Uno {
     type Writer = serial::Writer;
     type Memory = eeprom::Eeprom;
 
-    const ROOM: u8 = serial::ROOM;
+    const WRITER_CAPACITY: u8 = serial::ROOM;
     const CYCLES_PER_US: u16 = servo_pulses::CYCLES_PER_US;
 
     #[inline(always)]
@@ -107,7 +107,7 @@ impl Board for Uno {
     }
 
     #[inline(always)]
-    fn is_taken(&self) -> bool {
+    fn is_frame_taken(&self) -> bool {
         pulses::is_taken()
     }
 

@@ -71,7 +71,7 @@ impl<const N: usize> Ring<N> {
     fn put(&self, byte: u8) {
         let head = self.head.get();
         self.bytes[usize::from(head & Self::MASK)].set(byte);
-        // The byte is stored before the head moves, because the other side looks at the head first.
+        // The byte before the head: the other side looks at the head first.
         self.head.set(head.wrapping_add(1));
     }
 

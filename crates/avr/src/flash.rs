@@ -169,7 +169,7 @@ impl<'a, T> Flash<'a, [T]> {
 impl<'a> Flash<'a, [u8]> {
     /// Reinterprets the bytes as values of a [`Plain`] type; drops an incomplete value at the end.
     #[inline]
-    pub const fn of<T: Plain>(self) -> Flash<'a, [T]> {
+    pub const fn cast<T: Plain>(self) -> Flash<'a, [T]> {
         let values = core::ptr::slice_from_raw_parts(
             self.at.as_ptr().cast_const().cast::<T>(),
             self.len() / const { nonzero(size_of::<T>()) },

@@ -74,7 +74,7 @@ impl<'a> Region<'a> {
         let length = usize::from(count) * size_of::<T>();
         self.assert_has(at, length);
         let part = Flash::from(self.bytes).part(at.into(), length);
-        part.map_or(Flash::EMPTY, Flash::of)
+        part.map_or(Flash::EMPTY, Flash::cast)
     }
 
     fn assert_has(self, at: u16, length: usize) {

@@ -32,7 +32,7 @@ impl Feet {
 
     /// Places of the feet for sweeps in deg, servo order: (forward, left) from the chassis
     /// centre, mm.
-    pub fn at(&self, sweeps: [f64; 4]) -> [Point; 4] {
+    pub fn positions(&self, sweeps: [f64; 4]) -> [Point; 4] {
         let hips = self.hips();
         std::array::from_fn(|i| {
             let (sin, cos) = self.direction(i, sweeps[i]);
@@ -44,7 +44,7 @@ impl Feet {
     }
 
     /// Derivatives of the feet's places by the sweep, mm/rad.
-    pub(crate) fn along(&self, sweeps: [f64; 4]) -> [Point; 4] {
+    pub(crate) fn sweep_derivatives(&self, sweeps: [f64; 4]) -> [Point; 4] {
         std::array::from_fn(|i| {
             let (sin, cos) = self.direction(i, sweeps[i]);
             [self.reach * cos, -LEFT[i] * self.reach * sin]
@@ -100,10 +100,10 @@ mod tests {
             reach: 45.0,
         };
         assert_eq!(
-            feet.at([0.0; 4]),
+            feet.positions([0.0; 4]),
             [[55.0, 80.0], [55.0, -80.0], [-55.0, -80.0], [-55.0, 80.0]]
         );
-        let ahead = feet.at([90.0; 4]);
+        let ahead = feet.positions([90.0; 4]);
         let expected = [[100.0, 35.0], [100.0, -35.0], [-10.0, -35.0], [-10.0, 35.0]];
         for (foot, point) in ahead.into_iter().zip(expected) {
             assert!(
@@ -115,7 +115,7 @@ mod tests {
             mount: 90.0,
             ..feet
         }
-        .at([0.0; 4]);
+        .positions([0.0; 4]);
         assert!((splayed[0][0] - 100.0).abs() < 1e-12 && (splayed[2][0] + 100.0).abs() < 1e-9);
     }
 
@@ -129,8 +129,11 @@ mod tests {
         };
         let sweeps = [10.0, -5.0, 20.0, -15.0];
         let step = 1e-5;
-        let (before, after) = (feet.at(sweeps), feet.at(sweeps.map(|s| s + step)));
-        for (i, along) in feet.along(sweeps).into_iter().enumerate() {
+        let (before, after) = (
+            feet.positions(sweeps),
+            feet.positions(sweeps.map(|s| s + step)),
+        );
+        for (i, along) in feet.sweep_derivatives(sweeps).into_iter().enumerate() {
             for part in 0..2 {
                 let slope = (after[i][part] - before[i][part]) / step.to_radians();
                 assert!((along[part] - slope).abs() < 1e-3, "{along:?}");

@@ -72,7 +72,7 @@ pub(crate) struct Inertia {
 #[derive(Clone, Copy)]
 pub(crate) struct Compliance {
     /// Derivatives of the pads' places by the lag, backward, mm/rad.
-    pub along: [Point; 4],
+    pub lag_derivatives: [Point; 4],
     /// Lags before the step, rad.
     pub before: [f64; 4],
     /// Energies of the legs' lags.
@@ -132,7 +132,7 @@ impl Pads {
             size,
             twist: [size, size, size / largest(&self.at)],
             lag: self.compliance.map_or([0.0; 4], |compliance| {
-                compliance.along.map(|[x, y]| size / x.hypot(y))
+                compliance.lag_derivatives.map(|[x, y]| size / x.hypot(y))
             }),
         };
         let (mut x, mut z, first) = match guess {
@@ -216,10 +216,10 @@ impl Pads {
         };
         let jump = |i: usize| {
             if let Some(motor) = &compliance.lag_energy[i].motor {
-                let [x, y] = compliance.along[i];
+                let [x, y] = compliance.lag_derivatives[i];
                 return x.hypot(y) * motor.unloaded_end().abs();
             }
-            let ([x, y], lag) = (compliance.along[i], compliance.before[i]);
+            let ([x, y], lag) = (compliance.lag_derivatives[i], compliance.before[i]);
             let held_torque = self.load[i] * self.ratio.max(1.0) * x.hypot(y);
             match compliance.lag_energy[i].spring_torque(lag) > held_torque * (1.0 + 1e-6) {
                 true => x.hypot(y) * lag.abs(),
@@ -236,7 +236,7 @@ impl Pads {
             let ([x, y], [dx, dy]) = (self.at[i], self.swing[i]);
             let [bx, by] = self
                 .compliance
-                .map_or([0.0; 2], |compliance| compliance.along[i]);
+                .map_or([0.0; 2], |compliance| compliance.lag_derivatives[i]);
             let change = displacement.change[i];
             [
                 forward - turn * y + dx - change * bx,
@@ -302,7 +302,7 @@ impl Pads {
                 continue;
             };
             let unit = scale.lag[i];
-            let [bx, by] = compliance.along[i];
+            let [bx, by] = compliance.lag_derivatives[i];
             let row = [-bx * unit, -by * unit];
             let (energy, torque, stiffness) =
                 compliance.lag_energy[i].expand(displacement.lag[i], eps / scale.size * unit);

@@ -95,7 +95,7 @@ impl Stretch {
 
     /// Magnitude of the lever after a lag in the direction in which the strut grows.
     pub fn lever_after(&self, lag: f64) -> f64 {
-        self.at(lag).1
+        self.growth_and_derivatives(lag).1
     }
 
     /// Magnitude of the lag at which the strut has grown by this length, rad; infinite if it
@@ -115,7 +115,7 @@ impl Stretch {
     ///
     /// Lags are often a hundred-thousandth of a radian. The difference of two lengths
     /// would then be mostly rounding, and Newton's method would look for a minimum in it.
-    fn at(&self, lag: f64) -> (f64, f64, f64) {
+    fn growth_and_derivatives(&self, lag: f64) -> (f64, f64, f64) {
         let (product, (sin, cos)) = (self.line * self.arm, self.sin_cos);
         let (half_sin, half_cos) = (lag / 2.0).sin_cos();
         let (lag_sin, lag_cos) = (2.0 * half_sin * half_cos, 1.0 - 2.0 * half_sin * half_sin);
@@ -129,7 +129,7 @@ impl Stretch {
     /// Energy of a spring that pulls the strut together with `force` and `rate`, less
     /// `preload * lag`; `lag` is in the direction in which the strut grows.
     fn energy(&self, lag: f64, force: f64, rate: f64, preload: f64) -> Expansion {
-        let (growth, lever, lever_slope) = self.at(lag);
+        let (growth, lever, lever_slope) = self.growth_and_derivatives(lag);
         let pull = force + rate * growth;
         (
             force * growth - preload * lag + rate * growth * growth / 2.0,
@@ -215,7 +215,7 @@ impl LagEnergy {
             return motor.expand(lag, eps);
         }
         // Leg and servo are in series: both have the same torque.
-        let place = self.servo(lag, eps);
+        let place = self.servo_lag(lag, eps);
         let (motor_energy, torque, motor_stiffness) = motor.expand(place, eps);
         let (leg_energy, _, leg_stiffness) = self.expand_leg(lag - place, eps);
         (
@@ -226,7 +226,7 @@ impl LagEnergy {
     }
 
     /// Angle of the servo behind its reference at a lag of leg and servo together, rad.
-    pub fn servo(&self, lag: f64, eps: f64) -> f64 {
+    pub fn servo_lag(&self, lag: f64, eps: f64) -> f64 {
         match &self.motor {
             None => 0.0,
             Some(_) if self.is_rigid() => lag,
@@ -359,7 +359,7 @@ mod tests {
         for lag in [-0.1, -0.05, 0.0, 0.1] {
             assert_eq!(drive.expand(lag, 0.0).0, 0.0, "{lag}");
         }
-        let (growth, lever, _) = strut.at(0.01);
+        let (growth, lever, _) = strut.growth_and_derivatives(0.01);
         let torque = (8.0 + 0.7 * growth) * lever;
         assert!((drive.expand(0.11, 0.0).1 - torque).abs() < 1e-9);
         assert_eq!(drive.expand(-0.11, 0.0).1, -STOP);
@@ -375,7 +375,7 @@ mod tests {
         // The arm's component square to the strut.
         assert!((strut.lever().abs() - 22.0 * 70f64.to_radians().sin()).abs() < 1e-9);
         let end_lag = strut.lag_at_growth(5.0);
-        let (growth, ..) = strut.at(end_lag);
+        let (growth, ..) = strut.growth_and_derivatives(end_lag);
         assert!((growth - 5.0).abs() < 1e-9, "{growth}");
         assert_eq!(strut.lag_at_growth(50.0), f64::INFINITY);
     }
@@ -385,8 +385,8 @@ mod tests {
         let strut = strut(70.0);
         for lag in [1e-12, 1e-9, 1e-6] {
             // A series: the lever to first order, half its slope to second order.
-            let (growth, ..) = strut.at(lag);
-            let (_, lever, grows) = strut.at(0.0);
+            let (growth, ..) = strut.growth_and_derivatives(lag);
+            let (_, lever, grows) = strut.growth_and_derivatives(0.0);
             let series = lever * lag + grows * lag * lag / 2.0;
             assert!((growth / series - 1.0).abs() < 1e-11, "{lag} {growth}");
         }

@@ -13,13 +13,13 @@ pub struct Motor {
     /// Stall torque, N mm.
     pub stall: f64,
     /// No-load speed, deg/s.
-    pub rate: f64,
+    pub no_load_speed: f64,
     /// Time constant of the rotor without load, s.
     pub spin_up: f64,
     /// Error beyond the dead band at which the full torque is applied, deg.
-    pub full: f64,
+    pub full_torque_error: f64,
     /// Error within which no torque is applied, deg: half the dead band.
-    pub idle: f64,
+    pub half_dead_band: f64,
 }
 
 impl Motor {
@@ -27,14 +27,14 @@ impl Motor {
     pub fn at_supply(&self, share: f64) -> Self {
         Self {
             stall: self.stall * share,
-            rate: self.rate * share,
+            no_load_speed: self.no_load_speed * share,
             ..*self
         }
     }
 
     /// Torque that the motor loses for each rad/s by its back EMF, N mm s.
     pub fn damping(&self) -> f64 {
-        self.stall / self.rate.to_radians()
+        self.stall / self.no_load_speed.to_radians()
     }
 
     /// Inertia of the rotor through the gears, N mm s^2.
@@ -45,7 +45,7 @@ impl Motor {
     /// The share of the motor's torque-speed line that a torque (N mm) at a rate (deg/s) uses: 1 on the line
     /// itself, negative while the motor brakes.
     pub fn line_share(&self, torque: f64, rate: f64) -> f64 {
-        torque / self.stall + rate / self.rate
+        torque / self.stall + rate / self.no_load_speed
     }
 }
 
@@ -69,7 +69,7 @@ impl Motors {
     /// long step would damp it.
     pub(crate) fn step(&self) -> f64 {
         let swing = |motor: &Motor| match motor.spin_up > 0.0 {
-            true => (motor.full / motor.rate * motor.spin_up).sqrt(),
+            true => (motor.full_torque_error / motor.no_load_speed * motor.spin_up).sqrt(),
             // Without a rotor nothing vibrates.
             false => f64::INFINITY,
         };
@@ -103,10 +103,10 @@ mod tests {
 
     const SG90: Motor = Motor {
         stall: 176.5,
-        rate: 500.0,
+        no_load_speed: 500.0,
         spin_up: 0.02,
-        full: 3.0,
-        idle: 0.0,
+        full_torque_error: 3.0,
+        half_dead_band: 0.0,
     };
 
     const JOINTS: Joints = Joints {
@@ -156,7 +156,11 @@ mod tests {
         for seconds in [0.02, 0.04, 0.1] {
             let walker = turned(free, &motors(SG90, JOINTS), 1000.0, seconds);
             // The solution of J w' = stall - b w from rest.
-            let Motor { rate, spin_up, .. } = SG90;
+            let Motor {
+                no_load_speed: rate,
+                spin_up,
+                ..
+            } = SG90;
             let exact = rate * (seconds - spin_up * (1.0 - (-seconds / spin_up).exp()));
             for sweep in walker.servos() {
                 assert!(
@@ -184,7 +188,7 @@ mod tests {
         // Once rotor and legs are up to speed.
         let mean = (-angle_after() + angle_after()) / 0.02;
         let torque = heavy.grip() * heavy.feet.reach;
-        let rate = SG90.rate * (1.0 - torque / SG90.stall);
+        let rate = SG90.no_load_speed * (1.0 - torque / SG90.stall);
         assert!((mean / rate - 1.0).abs() < 0.1, "{mean} {rate}");
     }
 
@@ -192,7 +196,7 @@ mod tests {
     fn on_ice_legs_that_swing_forward_push_the_body_back_by_their_share_of_the_mass() {
         let ice = ground(435.0, 1e-4);
         let walker = turned(ice, &motors(SG90, JOINTS), 20.0, 0.5);
-        let forward = ice.feet.at(walker.legs())[0][0] - ice.feet.at([0.0; 4])[0][0];
+        let forward = ice.feet.positions(walker.legs())[0][0] - ice.feet.positions([0.0; 4])[0][0];
         assert!(forward > 15.0, "{forward}");
         let share = 4.0 * ice.body.leg_mass() / ice.body.mass;
         let back = walker.place().travel().forward;
@@ -239,7 +243,10 @@ mod tests {
     #[test]
     fn a_servo_settles_where_its_gain_bears_the_load_and_keeps_its_dead_band() {
         let free = ground(0.1, 0.001);
-        let banded = Motor { idle: 0.5, ..SG90 };
+        let banded = Motor {
+            half_dead_band: 0.5,
+            ..SG90
+        };
         let angle = turned(free, &motors(banded, JOINTS), 10.0, 1.0).servos()[0];
         assert!((9.49..10.51).contains(&angle), "{angle}");
         let angle = turned(free, &motors(SG90, JOINTS), 10.0, 1.0).servos()[0];

@@ -23,7 +23,7 @@ pub(crate) type Expansion = (f64, f64, f64);
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct MotorStep {
     /// Target ahead of the reference, rad.
-    ahead: f64,
+    target_ahead: f64,
     /// Half the dead band: the error up to which there is no torque, rad.
     idle: f64,
     /// Error beyond the dead band at which the torque is full, rad.
@@ -56,9 +56,9 @@ impl MotorStep {
         let inertial_stiffness = inertia + motor.damping() / seconds;
         let unloaded_turn = turn.rate * seconds;
         Self {
-            ahead: turn.target - turn.servo - unloaded_turn,
-            idle: motor.idle.to_radians(),
-            full: motor.full.to_radians(),
+            target_ahead: turn.target - turn.servo - unloaded_turn,
+            idle: motor.half_dead_band.to_radians(),
+            full: motor.full_torque_error.to_radians(),
             stall: motor.stall / force,
             inertial_stiffness: inertial_stiffness / force,
             unloaded: unloaded_turn * (1.0 - inertia / inertial_stiffness),
@@ -71,7 +71,7 @@ impl MotorStep {
     /// Energy at a place, its slope and its curvature, with the kink of dry friction rounded off
     /// within `eps` rad.
     pub fn expand(&self, place: f64, eps: f64) -> Expansion {
-        let error = self.ahead + place;
+        let error = self.target_ahead + place;
         let excess = (error.abs() - self.idle).max(0.0);
         let gain = self.stall / self.full;
         let (energy, torque, stiffness) = match excess < self.full {
@@ -158,10 +158,10 @@ mod tests {
     fn the_energy_of_a_step_has_its_torque_as_slope() {
         let motor = Motor {
             stall: 176.5,
-            rate: 500.0,
+            no_load_speed: 500.0,
             spin_up: 0.02,
-            full: 3.0,
-            idle: 0.0,
+            full_torque_error: 3.0,
+            half_dead_band: 0.0,
         };
         let turn = ServoState {
             target: 0.2,

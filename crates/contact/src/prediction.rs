@@ -22,15 +22,15 @@ const DECIDED_TURN: f64 = 0.5 * std::f64::consts::PI / 180.0;
 struct Uneven {
     walker: Walker,
     /// Sums of the differences of all steps: forward, left, turn.
-    differs: Twist,
+    total_difference: Twist,
 }
 
 impl Uneven {
     /// Makes walks in which each pad in turn has a larger load, or the backward friction differs.
-    fn all(ground: &Ground, sweeps: [f64; 4]) -> [Self; 6] {
+    fn variants(ground: &Ground, sweeps: [f64; 4]) -> [Self; 6] {
         let uneven = |load, ratio| Self {
             walker: Walker::with_unevenness(*ground, sweeps, load, ratio),
-            differs: [0.0; 3],
+            total_difference: [0.0; 3],
         };
         let even = [1.0; 4];
         std::array::from_fn(|i| match i {
@@ -46,7 +46,7 @@ impl Uneven {
 
     /// Moves the servos to these sweeps, and sums how far each twist differs from `twists`, those of even pads.
     fn follow(&mut self, sweeps: [f64; 4], twists: &[Twist]) {
-        let (mut part, differs) = (twists.iter(), &mut self.differs);
+        let (mut part, differs) = (twists.iter(), &mut self.total_difference);
         self.walker.move_servos(sweeps, |_, displacement| {
             let even = part.next().copied().unwrap_or_default();
             for i in 0..3 {
@@ -71,7 +71,7 @@ impl Ground {
         let mut sweeps = sweeps.into_iter();
         let first = sweeps.next().unwrap_or_default();
         let mut even = Walker::new(*self, first);
-        let mut uneven = Uneven::all(self, first);
+        let mut uneven = Uneven::variants(self, first);
         let (mut length, mut turned) = (0.0, 0.0);
         let mut twists = Vec::new();
         for next in sweeps {
@@ -95,9 +95,9 @@ impl Ground {
         };
         let all = |within: &dyn Fn(&Uneven) -> bool| uneven.iter().all(within);
         let decided = [
-            all(&|movement| movement.differs[0] <= mm && deviation(movement)[0] <= mm),
+            all(&|movement| movement.total_difference[0] <= mm && deviation(movement)[0] <= mm),
             all(&|movement| deviation(movement)[1] <= mm),
-            all(&|movement| movement.differs[2] <= rad),
+            all(&|movement| movement.total_difference[2] <= rad),
         ];
         let travel = place.travel();
         Prediction {
@@ -175,13 +175,13 @@ mod tests {
 
     #[test]
     fn legs_that_stand_still_or_swing_together_are_decided() {
-        const NOWHERE: Prediction = Prediction {
+        const NO_MOVEMENT: Prediction = Prediction {
             forward: Some(0.0),
             left: Some(0.0),
             turn: Some(0.0),
         };
-        assert_eq!(GROUND.predict([[0.0; 4]; 10]), NOWHERE);
-        assert_eq!(GROUND.predict([]), NOWHERE);
+        assert_eq!(GROUND.predict([[0.0; 4]; 10]), NO_MOVEMENT);
+        assert_eq!(GROUND.predict([]), NO_MOVEMENT);
         let movement = GROUND.predict([[20.0; 4], [-20.0; 4]]);
         let forward = movement.forward.expect("decided");
         assert!(movement.is_decided() && (forward - 90.0 * 20f64.to_radians().sin()).abs() < 1e-3);

@@ -168,7 +168,7 @@ impl Walker {
             Some(_) => servos[i] + self.rates[i] * seconds,
             None => servos[i],
         });
-        let from = self.ground.feet.at(self.legs());
+        let from = self.ground.feet.positions(self.legs());
         // A loaded motor turns nearly as far as an unloaded one, so this is a good estimate.
         let near = std::array::from_fn(|i| {
             self.lag[i].to_radians()
@@ -181,7 +181,7 @@ impl Walker {
         let displacement = pads.minimum();
         for (i, behind) in displacement.lag.into_iter().enumerate() {
             let servo = pads.compliance.map_or(0.0, |compliance| {
-                compliance.lag_energy[i].servo(behind, KINK_WIDTH)
+                compliance.lag_energy[i].servo_lag(behind, KINK_WIDTH)
             });
             self.servos[i] = reference[i] - servo.to_degrees();
             self.rates[i] = (self.servos[i] - servos[i]) / seconds;
@@ -252,7 +252,7 @@ impl Walker {
 
     /// Finds the displacement of a small step of the servos to these sweeps.
     fn find_step(&self, servos: [f64; 4]) -> (Pads, Displacement) {
-        let from = self.ground.feet.at(self.legs());
+        let from = self.ground.feet.positions(self.legs());
         let mut lag = self.lag.map(f64::to_radians);
         let mut pads = self.pads(from, servos, lag, [None; 4]);
         let mut displacement = pads.minimum();
@@ -281,8 +281,8 @@ impl Walker {
     ) -> Pads {
         let feet = &self.ground.feet;
         let ends: [f64; 4] = std::array::from_fn(|i| servos[i] - lag[i].to_degrees());
-        let to = feet.at(ends);
-        let along = feet.along(ends);
+        let to = feet.positions(ends);
+        let along = feet.sweep_derivatives(ends);
         // In the middle of the step, so that the reverse step is its exact inverse.
         let positions = points_from(&|i, j| (from[i][j] + to[i][j]) / 2.0);
         let lag_before = self.lag.map(f64::to_radians);
@@ -300,7 +300,7 @@ impl Walker {
             load: std::array::from_fn(|i| loads[i] * load[i]),
             body: None,
             compliance: (drive.lags() || motors.iter().any(Option::is_some)).then(|| Compliance {
-                along,
+                lag_derivatives: along,
                 before: lag_before,
                 lag_energy: std::array::from_fn(|i| LagEnergy {
                     motor: motors[i],

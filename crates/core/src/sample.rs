@@ -305,7 +305,7 @@ pub fn side_of(side: &kinematics::Slider, stroke_min: f64, stroke_max: f64) -> S
 }
 
 /// A board without a fault: 5.0 V on the chip and 6.0 V on the rail.
-pub const WELL: Health = Health {
+pub const HEALTHY: Health = Health {
     supply: Reading {
         reference: 221,
         rail: 393,

@@ -30,7 +30,7 @@ pub trait Board {
 
     /// Bytes that an idle writer takes without waiting; at least [`LONGEST_LINE`], since a
     /// line is written only when there is room for all of it.
-    const ROOM: u8;
+    const WRITER_CAPACITY: u8;
 
     /// Steps of a pulse width in a microsecond; the core counts in 1/16 us.
     const CYCLES_PER_US: u16;
@@ -44,7 +44,7 @@ pub trait Board {
 
     /// True if the last submitted pulses have been taken over, or none were submitted. This shows that the clock and
     /// everything that makes pulses work.
-    fn is_taken(&self) -> bool;
+    fn is_frame_taken(&self) -> bool;
 
     /// Submits the pulses of the next frame; they replace any that have not been taken over.
     fn submit(&mut self, pulses: Pulses);
@@ -132,7 +132,7 @@ impl Main {
     #[inline(always)]
     pub fn begin<B: Board>(&mut self, flash: Region<'static>, board: &mut B) {
         const {
-            assert!(B::ROOM >= LONGEST_LINE);
+            assert!(B::WRITER_CAPACITY >= LONGEST_LINE);
             assert!(B::CYCLES_PER_US == CYCLES_PER_US);
         }
         let restart = *board.restart();
@@ -161,7 +161,7 @@ impl Main {
         let ticks = board.ticks();
         if ticks != self.ticks {
             self.ticks = ticks;
-            if board.is_taken() {
+            if board.is_frame_taken() {
                 board.feed();
             } else if !self.control.motion().is_resting() {
                 return Step::Worked;

@@ -64,7 +64,7 @@ pub struct VirtualBoard {
     /// True while the submitted frame waits to be taken over.
     is_fresh: bool,
     playing: Pulses,
-    begun: Pulses,
+    started: Pulses,
     is_lit: bool,
     received: VecDeque<u8>,
     lost: u16,
@@ -90,7 +90,7 @@ pub struct VirtualBoard {
     /// The rate of the serial line.
     pub rate: Rate,
     /// Milliseconds since the watchdog was fed.
-    unfed: u16,
+    ms_since_fed: u16,
     is_hushed: bool,
     /// The pins of the servos and of the rail, once the main loop has connected them.
     connected: Option<([u8; 4], Option<u8>)>,
@@ -111,7 +111,7 @@ impl VirtualBoard {
             submitted: Pulses::default(),
             is_fresh: false,
             playing: Pulses::default(),
-            begun: Pulses::default(),
+            started: Pulses::default(),
             is_lit: false,
             received: VecDeque::new(),
             lost: 0,
@@ -126,7 +126,7 @@ impl VirtualBoard {
             has_boot_loader: false,
             restart: Restart::NONE,
             rate: Rate::Fastest,
-            unfed: 0,
+            ms_since_fed: 0,
             is_hushed: false,
             connected: None,
         }
@@ -156,12 +156,12 @@ impl VirtualBoard {
     /// watchdog resets the processor; [`VirtualBoard::reset`] has to follow then.
     pub fn pass_time(&mut self, ms: u16) -> bool {
         for _ in 0..ms {
-            self.unfed = self.unfed.saturating_add(1);
-            if self.unfed == WATCHDOG_MS {
+            self.ms_since_fed = self.ms_since_fed.saturating_add(1);
+            if self.ms_since_fed == WATCHDOG_MS {
                 self.is_hushed = true;
                 self.ram.mark_hung();
             }
-            if self.unfed >= 2 * WATCHDOG_MS {
+            if self.ms_since_fed >= 2 * WATCHDOG_MS {
                 return true;
             }
             self.millisecond();
@@ -183,7 +183,7 @@ impl VirtualBoard {
             }
             let width = self.playing.0[servo];
             if !self.is_hushed && self.connected.is_some() && WIDTHS.contains(&width.0) {
-                self.begun.0[servo] = width;
+                self.started.0[servo] = width;
             }
         }
     }
@@ -199,7 +199,7 @@ impl VirtualBoard {
             self.playing = self.submitted;
             self.is_fresh = false;
         }
-        self.begun = Pulses([Width(0); 4]);
+        self.started = Pulses([Width(0); 4]);
     }
 
     /// Milliseconds until the next tick.
@@ -267,13 +267,13 @@ impl VirtualBoard {
     }
 
     /// True while the submitted frame waits to be taken over.
-    pub const fn is_fresh(&self) -> bool {
+    pub const fn is_frame_pending(&self) -> bool {
         self.is_fresh
     }
 
     /// The pulses that have begun since the last hand-over.
     pub const fn started_pulses(&self) -> Pulses {
-        self.begun
+        self.started
     }
 
     /// True while the LED is lit.
@@ -283,7 +283,7 @@ impl VirtualBoard {
 
     /// Milliseconds since the watchdog was fed.
     pub const fn ms_since_fed(&self) -> u16 {
-        self.unfed
+        self.ms_since_fed
     }
 
     /// The servos' state that would survive a reset.
@@ -292,7 +292,7 @@ impl VirtualBoard {
     }
 
     /// True once the watchdog has ended the pulses.
-    pub const fn is_hushed(&self) -> bool {
+    pub const fn are_pulses_ended(&self) -> bool {
         self.is_hushed
     }
 }
@@ -301,7 +301,7 @@ impl Board for VirtualBoard {
     type Writer = Transmitter;
     type Memory = Eeprom;
 
-    const ROOM: u8 = u8::MAX;
+    const WRITER_CAPACITY: u8 = u8::MAX;
     const CYCLES_PER_US: u16 = CYCLES_PER_US;
 
     fn connect(&mut self, servos: [u8; 4], rail: Option<u8>) {
@@ -312,7 +312,7 @@ impl Board for VirtualBoard {
         self.ticks
     }
 
-    fn is_taken(&self) -> bool {
+    fn is_frame_taken(&self) -> bool {
         !self.is_fresh
     }
 
@@ -322,7 +322,7 @@ impl Board for VirtualBoard {
     }
 
     fn feed(&mut self) {
-        self.unfed = 0;
+        self.ms_since_fed = 0;
     }
 
     fn store_stance(&mut self, stance: &Stance, brown_outs: u8) {

@@ -6,7 +6,7 @@
 
 use crate::gait::{Gait, movement, size};
 use crate::least;
-use crate::path::{self, Seen};
+use crate::path::{self, PathPoint};
 use crate::trouble::Trouble;
 
 /// Part of a cycle over which the movement is compared.
@@ -17,7 +17,7 @@ const LEAST: usize = 8;
 const SIGMA: f64 = 0.003;
 /// Largest share by which a wrong picture rate makes a cycle longer or shorter, such as 25 per second taken for 24 or
 /// 27; the step of the search; and the standard deviation of the duration found by it.
-const OFF: f64 = 0.08;
+const LARGEST_RATE_ERROR: f64 = 0.08;
 const OFF_STEP: f64 = 0.005;
 const OFF_SIGMA: f64 = 0.01;
 /// Number of cycle beginnings that are tried.
@@ -50,9 +50,9 @@ pub(crate) struct Steps {
 
 impl Steps {
     /// The movements of a path.
-    pub(crate) fn of(path: &[Seen], period: f64) -> Self {
+    pub(crate) fn of(path: &[PathPoint], period: f64) -> Self {
         let later = PART * period;
-        let step = |seen: &Seen| {
+        let step = |seen: &PathPoint| {
             let there = path::between(path, seen.seconds + later)?;
             Some((seen.seconds, movement(there.seen_from(seen.place))))
         };
@@ -77,14 +77,14 @@ impl Steps {
         let (mut least, mut start, mut period) = self.best(gait.period, &tries, near);
         let (mut expected, mut doubt) = (gait.period, SIGMA);
         // The picture rate is off: then only the path itself gives the duration of a cycle.
-        let off = self.best(gait.period, &off(gait), near);
+        let off = self.best(gait.period, &wide_tries(gait), near);
         if off.0 < MUCH_BETTER * least {
             (least, start, period) = off;
             (expected, doubt) = (period, OFF_SIGMA);
         }
-        let here = squares(&self.differences(gait, start, period));
+        let misfit = squares(&self.differences(gait, start, period));
         let (there, times) = self.misfit_of_longer(gait);
-        if there < MUCH_BETTER * (here / self.moved()).min(1.0) {
+        if there < MUCH_BETTER * (misfit / self.moved()).min(1.0) {
             return Err(Trouble::AnotherPace { times });
         }
         let both = |(time, seen): &(f64, [f64; 3])| {
@@ -92,7 +92,7 @@ impl Steps {
             let predicted = gait.step(phase, phase + self.later / period);
             size(*seen).powi(2) + size(predicted).powi(2)
         };
-        if here > ANOTHER * self.steps.iter().map(both).sum::<f64>() {
+        if misfit > ANOTHER * self.steps.iter().map(both).sum::<f64>() {
             return Err(Trouble::NotThisGait {
                 period: gait.period,
             });
@@ -220,8 +220,8 @@ impl Steps {
 }
 
 /// The durations of a cycle that are tried if the picture rate may be off.
-fn off(gait: &Gait) -> Vec<f64> {
-    let steps = (OFF / OFF_STEP) as i32;
+fn wide_tries(gait: &Gait) -> Vec<f64> {
+    let steps = (LARGEST_RATE_ERROR / OFF_STEP) as i32;
     let time = |step: i32| gait.period * (1.0 + OFF_STEP * f64::from(step));
     (-steps..=steps).map(time).collect()
 }

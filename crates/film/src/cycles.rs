@@ -9,15 +9,15 @@
 use lizard_contact::{Place, Travel};
 
 use crate::clock::{Clock, Steps};
-use crate::gait::{Gait, MOVED, NEAR, movement, size};
-use crate::path::{self, Seen};
+use crate::gait::{Gait, HALF_WINDOW, MOVED, movement, size};
+use crate::path::{self, PathPoint};
 use crate::trouble::Trouble;
 
 /// Smallest share of the usual movement per cycle for the robot to count as walking.
 const WALKS: f64 = 0.9;
 /// Smallest share of the usual movement for the robot to count as walking unevenly, as when it starts or stops;
 /// below, the number of cycles for which it may do so.
-const GOES: f64 = 0.25;
+const UNEVEN_SHARE: f64 = 0.25;
 const UNEVEN: f64 = 1.25;
 /// Part of a cycle that is ignored after the start and before the stop.
 const MARGIN: f64 = 0.15;
@@ -34,7 +34,7 @@ pub(crate) struct Cycles {
     /// The movement of each cycle.
     pub travels: Vec<Travel>,
     /// Time and place of the beginning of each cycle, and of the end of the last one.
-    pub begins: Vec<Seen>,
+    pub begins: Vec<PathPoint>,
     /// Standard error of the times in `begins`, s.
     pub begin_error: f64,
 }
@@ -44,7 +44,7 @@ pub(crate) struct Cycles {
 /// # Errors
 /// Fails if the robot does not move, moves differently from the gait, changes its movement, or walks for less than
 /// two cycles.
-pub(crate) fn find(path: &[Seen], gait: &Gait) -> Result<Cycles, Trouble> {
+pub(crate) fn find(path: &[PathPoint], gait: &Gait) -> Result<Cycles, Trouble> {
     let (walked, [begin, end]) = walked(path, gait)?;
     let steps = Steps::of(walked, gait.period);
     let Clock {
@@ -55,14 +55,14 @@ pub(crate) fn find(path: &[Seen], gait: &Gait) -> Result<Cycles, Trouble> {
         let seconds = seconds - path[0].seconds;
         return Err(Trouble::Changes { seconds });
     }
-    let calm = gait.calm();
+    let calm = gait.calm_phase();
     // The times of the calm phases, from before the walk to after it.
     let first = ((begin - start) / period[0] - calm).ceil() as i64;
     let times = (first..).map(|i| start + (i as f64 + calm) * period[0]);
-    let near = NEAR * gait.period;
+    let near = HALF_WINDOW * gait.period;
     let places: Vec<(f64, Place)> = times
         .take_while(|&time| time <= end)
-        .map(|time| Some((time, path::at(path, time, near)?)))
+        .map(|time| Some((time, path::smoothed_at(path, time, near)?)))
         // The first cycle may have too few pictures before it.
         .skip_while(Option::is_none)
         .map_while(|place| place)
@@ -76,7 +76,7 @@ pub(crate) fn find(path: &[Seen], gait: &Gait) -> Result<Cycles, Trouble> {
         let cycle = path::of_travel(pair[1].1.seen_from(pair[0].1));
         path::compose(path::compose(to_calm, cycle), from_calm).travel()
     };
-    let begin = |(time, place): &(f64, Place)| Seen {
+    let begin = |(time, place): &(f64, Place)| PathPoint {
         seconds: time - calm * period[0],
         place: path::compose(*place, from_calm),
     };
@@ -91,12 +91,12 @@ pub(crate) fn find(path: &[Seen], gait: &Gait) -> Result<Cycles, Trouble> {
 }
 
 /// The movements while the robot walks evenly, if they are enough for a comparison with a gait.
-pub(crate) fn steps(path: &[Seen], gait: &Gait) -> Result<Steps, Trouble> {
+pub(crate) fn steps(path: &[PathPoint], gait: &Gait) -> Result<Steps, Trouble> {
     Ok(Steps::of(walked(path, gait)?.0, gait.period))
 }
 
 /// The path while the robot walks evenly, and the beginning and end of that time.
-fn walked<'a>(path: &'a [Seen], gait: &Gait) -> Result<(&'a [Seen], [f64; 2]), Trouble> {
+fn walked<'a>(path: &'a [PathPoint], gait: &Gait) -> Result<(&'a [PathPoint], [f64; 2]), Trouble> {
     let [begin, end] = walk(path, gait)?;
     let first = path.partition_point(|seen| seen.seconds < begin);
     let last = path.partition_point(|seen| seen.seconds <= end);
@@ -116,7 +116,7 @@ fn too_short(seconds: f64, gait: &Gait) -> Trouble {
 
 /// The mean displacement from the beginning of a cycle to its calm phase.
 fn to_calm(
-    path: &[Seen],
+    path: &[PathPoint],
     places: &[(f64, Place)],
     calm: f64,
     period: f64,
@@ -139,20 +139,20 @@ fn to_calm(
 
 /// The place at the beginning of a cycle: from the pictures before and after it, by the predicted movement in
 /// between. A straight line between them would not be the path of a gait that begins with a jerk.
-fn begin(path: &[Seen], seconds: f64, period: f64, gait: &Gait) -> Option<Place> {
+fn begin(path: &[PathPoint], seconds: f64, period: f64, gait: &Gait) -> Option<Place> {
     let after = path.partition_point(|seen| seen.seconds < seconds);
     let (a, b) = (path.get(after.checked_sub(1)?)?, path.get(after)?);
-    let by = |seen: &Seen| {
+    let by = |seen: &PathPoint| {
         let phase = 1.0 + (seen.seconds - seconds) / period;
         let moved = path::of_travel(gait.at(phase).seen_from(gait.at(1.0)));
         path::compose(seen.place, path::inverse(moved))
     };
     let share = (seconds - a.seconds) / (b.seconds - a.seconds);
-    Some(path::mix(by(a), by(b), share))
+    Some(path::interpolate(by(a), by(b), share))
 }
 
 /// The beginning and end of the time in which the robot walks evenly.
-fn walk(path: &[Seen], gait: &Gait) -> Result<[f64; 2], Trouble> {
+fn walk(path: &[PathPoint], gait: &Gait) -> Result<[f64; 2], Trouble> {
     let moves: Vec<(f64, Travel)> = path
         .iter()
         .filter_map(|seen| {
@@ -202,7 +202,7 @@ fn walk(path: &[Seen], gait: &Gait) -> Result<[f64; 2], Trouble> {
         }
     }
     let [from, to] = best.unwrap_or_default();
-    let goes = |size: &f64| *size > GOES * usual;
+    let goes = |size: &f64| *size > UNEVEN_SHARE * usual;
     let first = sizes.iter().position(goes).unwrap_or(from);
     let last = sizes.iter().rposition(goes).unwrap_or(to);
     for (start, end, seconds) in [

@@ -3,7 +3,7 @@
 use crate::frame::Frame;
 use crate::gait::Gait;
 use crate::measured::Measured;
-use crate::path::{Seen, unwind};
+use crate::path::{PathPoint, unwind};
 use crate::picture::{Picture, Pixel};
 use crate::scene::{FloorCorners, Measures, Scene, View};
 use crate::sheet::{CODES, DECK_TAG, FLOOR_TAGS};
@@ -23,7 +23,7 @@ const BEYOND: f64 = 200.0;
 const HEIGHT: f64 = 12.0;
 
 /// Pictures from one full search to the next, so that a second copy of a tag is noticed even if it appears later.
-const WHOLE: usize = 16;
+const FULL_SEARCH_INTERVAL: usize = 16;
 
 /// Measures of the sheet and the robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,8 +52,8 @@ impl Film {
     /// Finds the tags of a picture, which is not stored. If the last picture showed all tags, it searches only near
     /// their places there, which takes a fraction of the time; but every sixteenth picture gets a full search. If a
     /// full search finds an id twice, both tags are returned.
-    pub fn look(&mut self, picture: &Picture) -> Vec<Tag> {
-        self.since_whole = (self.since_whole + 1) % WHOLE;
+    pub fn find_tags(&mut self, picture: &Picture) -> Vec<Tag> {
+        self.since_whole = (self.since_whole + 1) % FULL_SEARCH_INTERVAL;
         let last = self.last.iter().enumerate();
         let near = last.map(|(id, corners)| tags::near(picture, id, corners.as_ref()?));
         let tags = match self.since_whole {
@@ -85,7 +85,7 @@ impl Film {
             Some(_) => {}
         }
         let mut tags = [None; CODES.len()];
-        for tag in self.look(picture) {
+        for tag in self.find_tags(picture) {
             if tags[tag.id].replace(tag.corners).is_some() {
                 return Err(Trouble::Twice { id: tag.id, number });
             }
@@ -116,12 +116,12 @@ impl Film {
         };
         let scene = Scene::of(&self.views(moved)?, measures)?;
         let mut frames = Vec::with_capacity(self.frames.len());
-        let mut path: Vec<Seen> = Vec::with_capacity(self.frames.len());
+        let mut path: Vec<PathPoint> = Vec::with_capacity(self.frames.len());
         let mut heights = Vec::with_capacity(self.frames.len());
         for frame in &self.frames {
             if let Some(place) = frame.place(&scene, moved) {
                 frames.push(frame.clone());
-                path.push(Seen {
+                path.push(PathPoint {
                     seconds: frame.seconds,
                     place,
                 });
@@ -180,7 +180,7 @@ impl Film {
 
     /// The usual corners of each floor tag: means of the middle half of all pictures, since a tag that is partly
     /// covered for a while seems to be elsewhere.
-    fn usual(&self) -> FloorCorners {
+    fn usual_floor_corners(&self) -> FloorCorners {
         std::array::from_fn(|id| {
             let seen: Vec<_> = self
                 .frames
@@ -195,7 +195,7 @@ impl Film {
 
     /// True if the camera moved: then two or more tags are elsewhere, while a partly covered tag is only one.
     fn is_moved(&self) -> bool {
-        let usual = self.usual();
+        let usual = self.usual_floor_corners();
         let is_elsewhere = |tag: &[Pixel; 4], usual: &[Pixel; 4]| {
             let pairs = tag.iter().zip(usual);
             pairs
@@ -229,7 +229,7 @@ impl Film {
                 .filter_map(|frame| frame.tags[DECK_TAG])
                 .collect();
             return Ok(vec![View {
-                floor: self.usual(),
+                floor: self.usual_floor_corners(),
                 decks: spread(decks.len()).map(|i| decks[i]).collect(),
             }]);
         }
@@ -249,7 +249,7 @@ impl Film {
     }
 
     /// Checks that the robot stays where the floor tags give valid places.
-    fn check_place(&self, scene: &Scene, path: &[Seen]) -> Result<(), Trouble> {
+    fn check_place(&self, scene: &Scene, path: &[PathPoint]) -> Result<(), Trouble> {
         let tags = scene.floor_tags();
         let middle = [0, 1].map(|i| tags.iter().map(|tag| tag[i]).sum::<f64>() / FLOOR_TAGS as f64);
         let from = |[x, y]: [f64; 2]| (x - middle[0]).hypot(y - middle[1]);

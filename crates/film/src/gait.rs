@@ -9,7 +9,7 @@ const ARM: f64 = 60.0;
 /// Smallest movement that counts as such, mm.
 pub(crate) const MOVED: f64 = 3.0;
 /// Half of the time whose pictures determine the place at the end of a cycle, in cycles.
-pub(crate) const NEAR: f64 = 0.08;
+pub(crate) const HALF_WINDOW: f64 = 0.08;
 
 /// A predicted gait.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,7 +33,7 @@ impl Gait {
         let within = phase.rem_euclid(1.0) * count as f64;
         let i = (within as usize).min(count - 1);
         let (a, b, share) = (self.path[i], self.path[i + 1], within - i as f64);
-        let mut place = path::mix(a, b, share);
+        let mut place = path::interpolate(a, b, share);
         for _ in 0..phase.floor().max(0.0) as usize {
             place = path::compose(self.path[count], place);
         }
@@ -41,7 +41,7 @@ impl Gait {
     }
 
     /// The phase around which the predicted movement changes least: a place between pictures is most accurate there.
-    pub(crate) fn calm(&self) -> f64 {
+    pub(crate) fn calm_phase(&self) -> f64 {
         let count = 50;
         let roughness = |i: usize| {
             let part = |j: f64| {
@@ -61,8 +61,8 @@ impl Gait {
 
     /// The movement around a phase, scaled to an entire cycle: mm, mm, deg.
     pub(crate) fn pace(&self, phase: f64) -> [f64; 3] {
-        let [forward, left, turn] = self.step(phase - NEAR / 2.0, phase + NEAR / 2.0);
-        [forward, left, (turn / ARM).to_degrees()].map(|part| part / NEAR)
+        let [forward, left, turn] = self.step(phase - HALF_WINDOW / 2.0, phase + HALF_WINDOW / 2.0);
+        [forward, left, (turn / ARM).to_degrees()].map(|part| part / HALF_WINDOW)
     }
 
     /// The movement from a phase to a later one.

@@ -50,7 +50,7 @@ pub use gait::Gait;
 pub use likeness::Likeness;
 pub use mean::Mean;
 pub use measured::Measured;
-pub use path::Seen;
+pub use path::PathPoint;
 pub use picture::{Picture, Pixel, luminance};
 pub use slide::{Slide, SlideTrouble};
 pub use tags::{Tag, read};

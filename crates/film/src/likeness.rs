@@ -6,7 +6,7 @@
 
 use crate::cycles;
 use crate::gait::Gait;
-use crate::path::Seen;
+use crate::path::PathPoint;
 use crate::trouble::Trouble;
 
 /// Largest misfit of an accepted gait: that of a robot that moves half as far as predicted.
@@ -27,7 +27,7 @@ pub enum Likeness {
 }
 
 /// Compares a path with gaits.
-pub(crate) fn of(path: &[Seen], gaits: &[Gait]) -> Likeness {
+pub(crate) fn of(path: &[PathPoint], gaits: &[Gait]) -> Likeness {
     let mut fits: Vec<(f64, usize)> = Vec::new();
     let mut slow = (f64::INFINITY, 1);
     let mut trouble = None;

@@ -32,7 +32,12 @@ impl Measured {
     /// Computes the means over walks.
     pub(crate) fn of(walks: Vec<Walk>, gait: &Gait) -> Self {
         let mean = |i: usize| {
-            let own = |walk: &Walk| (parts(&walk.cycles.travels)[i].clone(), walk.common()[i]);
+            let own = |walk: &Walk| {
+                (
+                    parts(&walk.cycles.travels)[i].clone(),
+                    walk.common_errors()[i],
+                )
+            };
             mean::of(&walks.iter().map(own).collect::<Vec<_>>())
         };
         let cycles: Vec<Travel> = walks

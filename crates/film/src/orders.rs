@@ -36,7 +36,7 @@ pub struct Order {
 
 impl Order {
     /// The angle of the pulse by robot.toml's direction, deg from neutral.
-    pub fn asked(&self) -> f64 {
+    pub fn pulse_angle(&self) -> f64 {
         match self.is_reversed {
             true => -self.sweep,
             false => self.sweep,
@@ -45,9 +45,9 @@ impl Order {
 }
 
 /// Makes all orders; the poses are counter-clockwise from neutral, or clockwise if `way` is -1.
-pub fn orders(way: f64) -> Vec<Order> {
+pub fn orders(side: f64) -> Vec<Order> {
     let order = |sweep: f64, is_reversed| Order {
-        sweep: way * sweep,
+        sweep: side * sweep,
         is_reversed,
     };
     let mut all = vec![order(0.0, false), order(SIDE, false)];
@@ -83,7 +83,7 @@ mod tests {
     #[test]
     fn large_steps_are_of_60_deg_to_both_sides_and_small_ones_go_there_and_back() {
         let orders = orders(-1.0);
-        let step = |i: usize| orders[i].asked() - orders[i - 1].asked();
+        let step = |i: usize| orders[i].pulse_angle() - orders[i - 1].pulse_angle();
         for i in flips() {
             let side = if i % 2 == 0 { 1.0 } else { -1.0 };
             assert_eq!(step(i), 2.0 * SIDE * side, "{i}");
@@ -100,8 +100,8 @@ mod tests {
     #[test]
     fn the_last_visit_comes_from_the_side_from_which_small_steps_turn_back() {
         let (orders, swing) = (orders(1.0), swings().start);
-        let last = orders[swing - 1].asked() - orders[swing - 2].asked();
-        let first = orders[swing].asked() - orders[swing - 1].asked();
+        let last = orders[swing - 1].pulse_angle() - orders[swing - 2].pulse_angle();
+        let first = orders[swing].pulse_angle() - orders[swing - 1].pulse_angle();
         assert!(last * first < 0.0);
     }
 }

@@ -9,7 +9,7 @@ const LEAST: usize = 4;
 
 /// The robot's place in a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Seen {
+pub struct PathPoint {
     /// Time of the picture, s.
     pub seconds: f64,
     /// The robot's place on the floor; the first strip lies along the forward axis.
@@ -32,7 +32,7 @@ pub(crate) fn of_travel(travel: Travel) -> Place {
 }
 
 /// The place at a share of the straight line between two places.
-pub(crate) fn mix(a: Place, b: Place, share: f64) -> Place {
+pub(crate) fn interpolate(a: Place, b: Place, share: f64) -> Place {
     Place {
         forward: a.forward + share * (b.forward - a.forward),
         left: a.left + share * (b.left - a.left),
@@ -41,7 +41,7 @@ pub(crate) fn mix(a: Place, b: Place, share: f64) -> Place {
 }
 
 /// Makes the headings continuous, so that two full turns differ from none.
-pub(crate) fn unwind(seen: &mut [Seen]) {
+pub(crate) fn unwind(seen: &mut [PathPoint]) {
     for i in 1..seen.len() {
         let before = seen[i - 1].place.heading;
         let turned = seen[i].place.heading - before;
@@ -51,7 +51,7 @@ pub(crate) fn unwind(seen: &mut [Seen]) {
 }
 
 /// The place at a time between two pictures, interpolated.
-pub(crate) fn between(path: &[Seen], seconds: f64) -> Option<Place> {
+pub(crate) fn between(path: &[PathPoint], seconds: f64) -> Option<Place> {
     let after = path.partition_point(|seen| seen.seconds < seconds);
     let b = path.get(after)?;
     let a = &path[after.checked_sub(1).unwrap_or(after)];
@@ -61,12 +61,13 @@ pub(crate) fn between(path: &[Seen], seconds: f64) -> Option<Place> {
     } else {
         1.0
     };
-    (share >= 0.0 && seconds >= a.seconds.min(b.seconds)).then(|| mix(a.place, b.place, share))
+    (share >= 0.0 && seconds >= a.seconds.min(b.seconds))
+        .then(|| interpolate(a.place, b.place, share))
 }
 
 /// The place at a time, by a parabola through the pictures within `half` seconds of it; `None` if there are no
 /// pictures before or after.
-pub(crate) fn at(path: &[Seen], seconds: f64, half: f64) -> Option<Place> {
+pub(crate) fn smoothed_at(path: &[PathPoint], seconds: f64, half: f64) -> Option<Place> {
     let mut begin = path.partition_point(|seen| seen.seconds < seconds - half);
     let mut end = path.partition_point(|seen| seen.seconds <= seconds + half);
     while end - begin < LEAST {
@@ -82,7 +83,7 @@ pub(crate) fn at(path: &[Seen], seconds: f64, half: f64) -> Option<Place> {
     let middle = |part: fn(&Place) -> f64| {
         // A constant curve through the first picture is a sufficient start, because the model is linear.
         let model = |at: &[f64]| -> Vec<f64> {
-            let residual = |seen: &Seen| {
+            let residual = |seen: &PathPoint| {
                 let t = (seen.seconds - seconds) / half;
                 at[0] + at[1] * t + at[2] * t * t - part(&seen.place)
             };

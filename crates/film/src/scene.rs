@@ -99,7 +99,7 @@ impl Scene {
     }
 
     /// The scene with one parameter changed.
-    pub(crate) fn moved(&self, parameter: usize, by: f64) -> Self {
+    pub(crate) fn with_parameter_changed(&self, parameter: usize, by: f64) -> Self {
         let mut moved = self.clone();
         moved.parameters[parameter] += by;
         moved

@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 use crate::figure::Figure;
 use crate::least;
 use crate::mean::widening;
-use crate::path::Seen;
+use crate::path::PathPoint;
 use crate::watched::Watched;
 
 /// Time at the beginning during which the board is level, s.
@@ -90,7 +90,7 @@ pub enum SlideTrouble {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slide {
     /// True if the robot slides head first.
-    pub is_ahead: bool,
+    pub is_head_first: bool,
     /// Time at which the slide begins, s.
     pub begin: f64,
     /// Tilt at that time, deg.
@@ -119,7 +119,7 @@ impl Slide {
     pub fn of(watched: &Watched) -> Result<Self, SlideTrouble> {
         let cameras: Vec<_> = watched.cameras().collect();
         let first = watched.path.first().map_or(0.0, |seen| seen.seconds);
-        let is_level = |seen: &Seen| seen.seconds < first + LEVEL;
+        let is_level = |seen: &PathPoint| seen.seconds < first + LEVEL;
         let level = watched
             .path
             .iter()
@@ -206,7 +206,7 @@ impl Slide {
         let resting = tilt.value.to_radians().tan();
         let slope = 1.0 + resting * resting;
         Ok(Self {
-            is_ahead: aside(moments[slid].heading, moments[slid].down) < 90.0,
+            is_head_first: angle_between(moments[slid].heading, moments[slid].down) < 90.0,
             begin,
             tilt,
             resting: Figure {
@@ -223,11 +223,11 @@ impl Slide {
 
 /// Checks that the robot slides downhill, with its head or its tail in front.
 fn check_ways(moment: &Moment, way: [f64; 2]) -> Result<(), SlideTrouble> {
-    let beside = aside(way[1].atan2(way[0]), moment.down);
+    let beside = angle_between(way[1].atan2(way[0]), moment.down);
     if beside > ASIDE {
         return Err(SlideTrouble::NotDown { aside: beside });
     }
-    let head = aside(moment.heading, moment.down);
+    let head = angle_between(moment.heading, moment.down);
     match head.min(180.0 - head) > ASIDE {
         true => Err(SlideTrouble::Across { aside: head }),
         false => Ok(()),
@@ -235,7 +235,7 @@ fn check_ways(moment: &Moment, way: [f64; 2]) -> Result<(), SlideTrouble> {
 }
 
 /// The unsigned angle between a heading in rad and a direction, deg.
-fn aside(heading: f64, [x, y]: [f64; 2]) -> f64 {
+fn angle_between(heading: f64, [x, y]: [f64; 2]) -> f64 {
     let (sin, cos) = (heading - y.atan2(x)).sin_cos();
     sin.atan2(cos).to_degrees().abs()
 }

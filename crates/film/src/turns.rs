@@ -7,7 +7,7 @@ use crate::figure::Figure;
 use crate::least;
 use crate::mean::{self, widening};
 use crate::orders::{self, Order, PAUSE};
-use crate::path::Seen;
+use crate::path::PathPoint;
 use crate::spin::{Rates, Step};
 use crate::turns_trouble::TurnsTrouble;
 
@@ -73,7 +73,7 @@ pub struct Turns {
     /// Mean of the rates in both directions, deg/s.
     pub rate: Figure,
     /// Rates counter-clockwise and clockwise, deg/s.
-    pub ways: [Figure; 2],
+    pub rates: [Figure; 2],
     /// Time constant of the rotor, s; `None` if the film has too few pictures for it.
     pub spin_up: Option<Figure>,
     /// Time of the first order, s.
@@ -91,7 +91,7 @@ impl Turns {
     ///
     /// # Errors
     /// Fails if the horn does not turn as ordered, or is visible too rarely.
-    pub fn of(path: &[Seen], jig: Jig) -> Result<Self, TurnsTrouble> {
+    pub fn of(path: &[PathPoint], jig: Jig) -> Result<Self, TurnsTrouble> {
         let turns = Path::new(path);
         let orders = orders::orders(jig.way);
         let begin = turns.begin(&orders)?;
@@ -116,7 +116,7 @@ impl Turns {
             hysteresis,
             dead_band: turns.dead_band(begin, &orders, &rests, gain.value),
             rate: of_motor(rate),
-            ways: [fit.figure(a, &[1.0, 0.0]), fit.figure(b, &[0.0, 1.0])].map(of_motor),
+            rates: [fit.figure(a, &[1.0, 0.0]), fit.figure(b, &[0.0, 1.0])].map(of_motor),
             spin_up: fit.spin_up,
             begin,
             pictures: turns.rate(),
@@ -148,7 +148,7 @@ impl Turns {
             });
         }
         // Only a load makes one direction slower than the other.
-        let uneven = |turns: &Self| (turns.ways[0].value - turns.ways[1].value).abs();
+        let uneven = |turns: &Self| (turns.rates[0].value - turns.rates[1].value).abs();
         if uneven(self) > uneven(loaded) {
             return Err(TurnsTrouble::Swapped);
         }
@@ -181,7 +181,7 @@ fn of_motor(rate: Figure) -> Figure {
 fn line(orders: &[Order], rests: &[Option<f64>]) -> Option<[Figure; 2]> {
     let seen: Vec<(f64, f64, f64)> = orders::visits()
         .filter_map(|i| {
-            let (before, now) = (orders[i - 1].asked(), orders[i].asked());
+            let (before, now) = (orders[i - 1].pulse_angle(), orders[i].pulse_angle());
             (now != before).then_some((now, (now - before).signum(), rests[i]?))
         })
         .collect();
@@ -215,8 +215,8 @@ struct Path {
 }
 
 impl Path {
-    fn new(path: &[Seen]) -> Self {
-        let turn = |seen: &Seen| (seen.seconds, seen.place.heading.to_degrees());
+    fn new(path: &[PathPoint]) -> Self {
+        let turn = |seen: &PathPoint| (seen.seconds, seen.place.heading.to_degrees());
         let turns: Vec<_> = path.iter().map(turn).collect();
         let mut sums = vec![0.0];
         for (i, (_, angle)) in turns.iter().enumerate() {
@@ -254,7 +254,7 @@ impl Path {
 
     /// The share of the rests' variance that the orders do not explain, if the first order is at `begin`.
     fn unexplained(&self, orders: &[Order], begin: f64, pause: f64) -> Option<f64> {
-        let pair = |i: usize| Some((orders[i].asked(), self.rest(begin, pause, i)?));
+        let pair = |i: usize| Some((orders[i].pulse_angle(), self.rest(begin, pause, i)?));
         let pairs: Vec<(f64, f64)> = (0..orders.len()).filter_map(pair).collect();
         if (pairs.len() as f64) < SEEN * orders.len() as f64 {
             return None;
@@ -374,7 +374,7 @@ impl Path {
             let (Some(from), Some(to)) = (rests[i - 1], rests[i]) else {
                 continue;
             };
-            let ordered = orders[i].asked() - orders[i - 1].asked();
+            let ordered = orders[i].pulse_angle() - orders[i - 1].pulse_angle();
             let moved = (to - from) / gain * ordered.signum();
             let had_moved = std::mem::replace(&mut has_moved, moved > least);
             if !has_moved {

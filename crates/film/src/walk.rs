@@ -9,30 +9,30 @@ use crate::cycles::Cycles;
 pub(crate) struct Walk {
     pub cycles: Cycles,
     /// The variances of a mean cycle that result from those of the scene: forward, left, turn.
-    pub doubts: [f64; 3],
+    pub scene_variances: [f64; 3],
     /// Standard error of all lengths, as a share.
     pub scale: f64,
     /// The deviation of each picture from the predicted path.
-    pub offs: Vec<Off>,
+    pub offs: Vec<Deviation>,
 }
 
 impl Walk {
     /// The errors of a mean cycle that all its cycles share: those of ruler and height, clock and camera.
-    pub(crate) fn common(&self) -> [f64; 3] {
+    pub(crate) fn common_errors(&self) -> [f64; 3] {
         let ways = parts(&self.cycles.travels);
         let [period, error] = self.cycles.period;
         [0, 1, 2].map(|i| {
             let way = ways[i].iter().sum::<f64>() / ways[i].len() as f64;
             let scale = if i < 2 { way * self.scale } else { 0.0 };
             let clock = self.cycles.pace[i] * error / period;
-            (scale.powi(2) + clock.powi(2) + self.doubts[i]).sqrt()
+            (scale.powi(2) + clock.powi(2) + self.scene_variances[i]).sqrt()
         })
     }
 }
 
 /// The place in a picture minus the predicted one, both relative to the beginning of the cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Off {
+pub(crate) struct Deviation {
     /// Index of the cycle.
     pub cycle: usize,
     /// Phase of the picture, 0 to 1.

@@ -4,7 +4,7 @@
 //! stands still.
 
 use crate::gait::{Gait, MOVED, movement, size};
-use crate::path::Seen;
+use crate::path::PathPoint;
 
 /// Shortest rest, s.
 const REST: f64 = 0.8;
@@ -18,7 +18,7 @@ const MORE: f64 = 1.4;
 
 /// Finds the times, s, from the middle of one rest to that of the next between which the robot moves away. A rest
 /// lasts `rest` seconds or more.
-pub(crate) fn of(path: &[Seen], rest: f64) -> Vec<[f64; 2]> {
+pub(crate) fn of(path: &[PathPoint], rest: f64) -> Vec<[f64; 2]> {
     let mut rests = vec![false; path.len()];
     for (first, seen) in path.iter().enumerate() {
         let end = path.partition_point(|later| later.seconds < seen.seconds + rest) + 1;
@@ -43,7 +43,7 @@ pub(crate) fn of(path: &[Seen], rest: f64) -> Vec<[f64; 2]> {
         // Includes the last picture of the rest before and the first picture of the rest after.
         let walk = &path[next.saturating_sub(1)..(end + 1).min(path.len())];
         let [first, last] = [0, walk.len() - 1].map(|i| walk[i].seconds);
-        if !is_rest && goes(walk) {
+        if !is_rest && moves_away(walk) {
             // The gait may begin and end with a time in which the robot stands still.
             let from = path[0].seconds.max(first - rest / 2.0);
             walks.push([from, path[path.len() - 1].seconds.min(last + rest / 2.0)]);
@@ -63,11 +63,11 @@ pub fn rest(gaits: &[Gait]) -> f64 {
 fn longest_still(gait: &Gait) -> f64 {
     let count = gait.path.len() - 1;
     let seconds = |i: usize| i as f64 * gait.period / count as f64;
-    let seen = |i: usize| Seen {
+    let seen = |i: usize| PathPoint {
         seconds: seconds(i),
         place: gait.at(i as f64 / count as f64),
     };
-    let path: Vec<Seen> = (0..2 * count).map(seen).collect();
+    let path: Vec<PathPoint> = (0..2 * count).map(seen).collect();
     let still = |first: usize| {
         let ends = (first + LEAST..first + count).take_while(|end| is_still(&path[first..*end]));
         ends.last().map_or(0.0, |end| seconds(end - 1 - first))
@@ -76,7 +76,7 @@ fn longest_still(gait: &Gait) -> f64 {
 }
 
 /// True if the places differ no more than those in pictures of a robot at rest.
-fn is_still(path: &[Seen]) -> bool {
+fn is_still(path: &[PathPoint]) -> bool {
     let count = path.len() as f64;
     let moves: Vec<[f64; 3]> = path
         .iter()
@@ -88,7 +88,7 @@ fn is_still(path: &[Seen]) -> bool {
 }
 
 /// True if the robot moves away from the first place.
-fn goes(path: &[Seen]) -> bool {
+fn moves_away(path: &[PathPoint]) -> bool {
     let start = path[0].place;
     path.iter()
         .any(|seen| size(movement(seen.place.seen_from(start))) > MOVED)

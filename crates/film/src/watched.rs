@@ -8,7 +8,7 @@ use crate::frame::Frame;
 use crate::gait::Gait;
 use crate::likeness::{self, Likeness};
 use crate::measured::Measured;
-use crate::path::{Seen, unwind};
+use crate::path::{PathPoint, unwind};
 use crate::scene::Scene;
 use crate::trouble::Trouble;
 use crate::walk::{Walk, parts};
@@ -39,7 +39,7 @@ pub struct Sight {
 #[derive(Debug, Clone)]
 pub struct Watched {
     /// The robot's path.
-    pub path: Vec<Seen>,
+    pub path: Vec<PathPoint>,
     /// The camera.
     pub sight: Sight,
     scene: Scene,
@@ -52,7 +52,7 @@ pub struct Watched {
 impl Watched {
     /// A film with a frame for each place of the path.
     pub(crate) fn new(
-        path: Vec<Seen>,
+        path: Vec<PathPoint>,
         sight: Sight,
         scene: Scene,
         frames: Vec<Frame>,
@@ -80,7 +80,7 @@ impl Watched {
         let offs = within::offs(path, &cycles, gait);
         let walk = Walk {
             cycles,
-            doubts,
+            scene_variances: doubts,
             scale,
             offs,
         };
@@ -105,7 +105,7 @@ impl Watched {
     }
 
     /// The path between two times, s, or all of it.
-    fn part(&self, during: Option<[f64; 2]>) -> &[Seen] {
+    fn part(&self, during: Option<[f64; 2]>) -> &[PathPoint] {
         let [from, to] = during.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
         let begin = self.path.partition_point(|seen| seen.seconds < from);
         let end = self.path.partition_point(|seen| seen.seconds <= to);
@@ -127,10 +127,10 @@ impl Watched {
         };
         let frames: Vec<&Frame> = cycles.ends.iter().filter_map(nearest).collect();
         let mean = |scene: &Scene| -> [f64; 3] {
-            let mut seen: Vec<Seen> = frames
+            let mut seen: Vec<PathPoint> = frames
                 .iter()
                 .filter_map(|frame| {
-                    Some(Seen {
+                    Some(PathPoint {
                         seconds: 0.0,
                         place: frame.place(scene, self.sight.moved)?,
                     })
@@ -147,7 +147,7 @@ impl Watched {
         let slopes: Vec<[f64; 3]> = (0..count)
             .map(|i| {
                 let step = scene.covariance[(i, i)].sqrt().max(1e-12);
-                let there = mean(&scene.moved(i, step));
+                let there = mean(&scene.with_parameter_changed(i, step));
                 [0, 1, 2].map(|part| (there[part] - here[part]) / step)
             })
             .collect();

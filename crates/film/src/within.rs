@@ -9,8 +9,8 @@ use lizard_contact::Travel;
 use crate::cycles::Cycles;
 use crate::gait::Gait;
 use crate::mean::{self, Mean};
-use crate::path::Seen;
-use crate::walk::{Off, Walk};
+use crate::path::PathPoint;
+use crate::walk::{Deviation, Walk};
 
 /// Largest number of parts of a cycle; each part should have at least one picture.
 const PARTS: usize = 24;
@@ -37,16 +37,16 @@ impl Point {
 }
 
 /// Compares the places of pictures with a gait.
-pub(crate) fn offs(path: &[Seen], cycles: &Cycles, gait: &Gait) -> Vec<Off> {
+pub(crate) fn offs(path: &[PathPoint], cycles: &Cycles, gait: &Gait) -> Vec<Deviation> {
     let mut offs = Vec::new();
     for (cycle, pair) in cycles.begins.windows(2).enumerate() {
         let (begin, end) = (pair[0], pair[1].seconds);
-        let inside = |seen: &&Seen| (begin.seconds..end).contains(&seen.seconds);
+        let inside = |seen: &&PathPoint| (begin.seconds..end).contains(&seen.seconds);
         for seen in path.iter().filter(inside) {
             let phase = (seen.seconds - begin.seconds) / (end - begin.seconds);
             let [there, predicted] =
                 [seen.place.seen_from(begin.place), gait.at(phase).travel()].map(parts);
-            offs.push(Off {
+            offs.push(Deviation {
                 cycle,
                 phase,
                 off: [0, 1, 2].map(|axis| there[axis] - predicted[axis]),
@@ -97,7 +97,7 @@ fn point(walks: &[Walk], gait: &Gait, part: usize, count: usize) -> Option<Point
             } else {
                 0.0
             };
-            let common = late.powi(2) + scale.powi(2) + phase.powi(2) * walk.doubts[axis];
+            let common = late.powi(2) + scale.powi(2) + phase.powi(2) * walk.scene_variances[axis];
             (cycles.len() > 1).then(|| (cycles, common.sqrt()))
         };
         let walks: Vec<_> = walks.iter().filter_map(own).collect();
@@ -116,7 +116,7 @@ fn point(walks: &[Walk], gait: &Gait, part: usize, count: usize) -> Option<Point
 
 /// The mean difference in a part of the cycle, for each cycle that has a picture there.
 fn in_cycles(walk: &Walk, part: usize, count: usize, axis: usize) -> Vec<f64> {
-    let is_here = |off: &&Off| (off.phase * count as f64) as usize == part;
+    let is_here = |off: &&Deviation| (off.phase * count as f64) as usize == part;
     let cycle = |cycle: usize| {
         let here = walk.offs.iter().filter(|off| off.cycle == cycle);
         let here: Vec<f64> = here.filter(is_here).map(|off| off.off[axis]).collect();

@@ -21,10 +21,10 @@ pub(crate) const COUNT: usize = 3;
 
 impl Card {
     /// Standard deviations of the mounting errors of hand-glued cards: deg, mm, mm.
-    pub(crate) const DOUBTS: [f64; COUNT] = [2.0, 2.0, 2.0];
+    pub(crate) const PRIOR_ERRORS: [f64; COUNT] = [2.0, 2.0, 2.0];
 
     /// Converts a movement of the robot to that of the card, in the card's frame at the start.
-    pub(crate) fn seen(&self, travel: Travel) -> Travel {
+    pub(crate) fn card_travel(&self, travel: Travel) -> Travel {
         let at = |body: Place| {
             let [forward, left] = body.on_floor([self.ahead, self.left]);
             let heading = body.heading + self.turn.to_radians();
@@ -55,7 +55,7 @@ mod tests {
 
     fn assert_seen(card: [f64; COUNT], way: [f64; 3], seen: [f64; 3]) {
         let [forward, left, turn] = way;
-        let found = Card::from(card).seen(Travel {
+        let found = Card::from(card).card_travel(Travel {
             forward,
             left,
             turn,

@@ -2,7 +2,7 @@
 
 /// The value that a chi-square variable exceeds with a probability of 1 %, by the approximation of Wilson and
 /// Hilferty (1931): accurate to 2 % from one degree of freedom on.
-pub(crate) fn rare(freedom: f64) -> f64 {
+pub(crate) fn percentile_99(freedom: f64) -> f64 {
     /// The normal deviate that is exceeded with a probability of 1 %.
     const DEVIATE: f64 = 2.326_35;
     let spread = 2.0 / (9.0 * freedom);
@@ -16,7 +16,7 @@ mod tests {
     #[test]
     fn it_is_that_of_tables() {
         for (freedom, tabled) in [(1.0, 6.635), (2.0, 9.210), (5.0, 15.086), (15.0, 30.578)] {
-            let found = rare(freedom);
+            let found = percentile_99(freedom);
             assert!((found / tabled - 1.0).abs() < 0.02, "{freedom}: {found}");
         }
     }

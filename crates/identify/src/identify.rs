@@ -9,28 +9,28 @@ use lizard_robot::{CheckedGait, Robot, Travel};
 use nalgebra::DMatrix;
 
 use crate::card::{self, Card};
-use crate::chi_square::rare;
+use crate::chi_square::percentile_99;
 use crate::key::{COUNT, KEYS, PLAY, RATIO, TWIST};
 use crate::outcome::{Found, Goodness, Identified, Row, Verdict};
 use crate::problem::{Problem, Solution, UNKNOWNS, Values, split};
 use crate::trouble::Trouble;
-use crate::way::Way;
+use crate::way::MeasuredMovement;
 
 /// Keys for which the model is least linear near the file's value.
-const FOLDED: [usize; 3] = [PLAY, TWIST, RATIO];
+const NONLINEAR_KEYS: [usize; 3] = [PLAY, TWIST, RATIO];
 /// Distance from the file's value, in standard errors, from which on a key takes its new value.
-const MOVES: f64 = 2.0;
+const MIN_DISTANCE_ERRORS: f64 = 2.0;
 /// Least rise of the sum of squares that counts when a key is moved by [`MOVES`] errors; a smaller one may be the
 /// model's roughness. It limits the growth of an error to a factor of four.
 const LEAST_RISE: f64 = 0.25;
 /// Largest standard error of a key that counts as determined, as a share of its prior standard deviation.
-const TOLD: f64 = 0.5;
+const MAX_ERROR_SHARE: f64 = 0.5;
 /// Correlation of errors above which two keys are reported as hard to distinguish.
-const ALIKE: f64 = 0.8;
+const MIN_CORRELATION: f64 = 0.8;
 
 /// Runs a function for the indices from 0 up to a count, one after another or on all cores, and returns the results
 /// in order.
-pub type Each<'a> = &'a dyn Fn(usize, &(dyn Fn(usize) -> Travel + Sync)) -> Vec<Travel>;
+pub type RunAll<'a> = &'a dyn Fn(usize, &(dyn Fn(usize) -> Travel + Sync)) -> Vec<Travel>;
 
 /// Identifies the keys of a robot from its measured movements. `each` runs the gaits of the model: some hundreds, a
 /// tenth of a second each.
@@ -38,14 +38,18 @@ pub type Each<'a> = &'a dyn Fn(usize, &(dyn Fn(usize) -> Travel + Sync)) -> Vec<
 /// # Errors
 /// Fails for a gait that the robot does not have or that moves no servo, for figures that are not finite or out of
 /// range, and if no movement determines a key.
-pub fn identify(robot: &Robot, ways: &[Way], each: Each) -> Result<Identified, Trouble> {
+pub fn identify(
+    robot: &Robot,
+    ways: &[MeasuredMovement],
+    each: RunAll,
+) -> Result<Identified, Trouble> {
     let mut ways = ways.to_vec();
     let mut walks = Vec::new();
     for way in &mut ways {
         let gait = robot.gait(&way.gait);
         let gait = gait.ok_or_else(|| Trouble::NoSuchGait(way.gait.clone()))?;
         if !gait.moves() {
-            return Err(Trouble::Still(way.gait.clone()));
+            return Err(Trouble::MovesNoServo(way.gait.clone()));
         }
         let numbers = way.mean.iter().chain(&way.error);
         let right = numbers.chain([&way.pace]).all(|figure| figure.is_finite());
@@ -80,13 +84,13 @@ pub fn identify(robot: &Robot, ways: &[Way], each: Each) -> Result<Identified, T
 
 /// Finds the keys with which a model reproduces the measured movements.
 pub(crate) fn solve(
-    ways: &[Way],
+    ways: &[MeasuredMovement],
     start: Values,
     predict: &dyn Fn(&Values) -> Vec<Travel>,
 ) -> Result<Identified, Trouble> {
     let problem = Problem::new(ways, start, predict);
     if problem.figures() == 0 {
-        return Err(Trouble::NoWay);
+        return Err(Trouble::NothingDetermined);
     }
     let all: Vec<usize> = (0..UNKNOWNS).collect();
     let Fit {
@@ -102,14 +106,14 @@ pub(crate) fn solve(
     };
     let errors = errors(&problem, &full).map(|error| widened * error);
     let (last, verdicts) = choose(&problem, &full, &errors)?;
-    let still = problem.fit(&all[COUNT..], &problem.before());
-    let still = still.ok_or(Trouble::NoFit)?;
+    let card_only_fit = problem.fit(&all[COUNT..], &problem.start_unknowns());
+    let still = card_only_fit.ok_or(Trouble::NoFit)?;
     let differences = problem.differences(&last.at).into_iter().enumerate();
-    let each = differences.flat_map(|(row, parts)| {
+    let run_all = differences.flat_map(|(row, parts)| {
         let parts = parts.into_iter().enumerate();
         parts.map(move |(part, difference)| (row, part, difference))
     });
-    let worst = each.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()));
+    let worst = run_all.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()));
     let after = split(&last.at).0;
     let found = |(i, key): (usize, &'static crate::Key)| Found {
         key,
@@ -119,11 +123,11 @@ pub(crate) fn solve(
         verdict: verdicts[i],
     };
     let seen = problem
-        .seen(&still.at)
+        .predicted_on_card(&still.at)
         .into_iter()
-        .zip(problem.seen(&last.at));
+        .zip(problem.predicted_on_card(&last.at));
     let rows = ways.iter().zip(seen);
-    let row = |(way, (before, after)): (&Way, _)| Row {
+    let row = |(way, (before, after)): (&MeasuredMovement, _)| Row {
         way: way.clone(),
         before,
         after,
@@ -132,7 +136,7 @@ pub(crate) fn solve(
     Ok(Identified {
         keys: KEYS.iter().enumerate().map(found).collect(),
         card: [split(&last.at).1, Card::from(card)],
-        alike: alike(&full.covariance),
+        correlated: correlated_pairs(&full.covariance),
         goodness: Goodness {
             figures: problem.figures(),
             chi_square: [still.chi_square, last.chi_square, full.chi_square],
@@ -140,7 +144,7 @@ pub(crate) fn solve(
             limit,
             explains,
             widened,
-            worst: worst.ok_or(Trouble::NoWay)?,
+            worst: worst.ok_or(Trouble::NothingDetermined)?,
         },
         rows: rows.map(row).collect(),
     })
@@ -163,11 +167,11 @@ struct Fit {
 /// minimum may reach that, too.
 fn fit_all(problem: &Problem) -> Result<Fit, Trouble> {
     let all: Vec<usize> = (0..UNKNOWNS).collect();
-    let before = problem.before();
-    let elsewhere = FOLDED.iter().flat_map(|&key| {
+    let before = problem.start_unknowns();
+    let elsewhere = NONLINEAR_KEYS.iter().flat_map(|&key| {
         [1.0, -1.0].map(|side| {
             let mut guess = before;
-            guess[key] = (before[key] + side * problem.doubts[key]).max(KEYS[key].least);
+            guess[key] = (before[key] + side * problem.prior_errors[key]).max(KEYS[key].least);
             guess
         })
     });
@@ -177,7 +181,11 @@ fn fit_all(problem: &Problem) -> Result<Fit, Trouble> {
             continue;
         };
         let freedom = freedom(problem, &full);
-        let limit = if freedom < 1.0 { 0.0 } else { rare(freedom) };
+        let limit = if freedom < 1.0 {
+            0.0
+        } else {
+            percentile_99(freedom)
+        };
         let explains = freedom < 1.0 || full.chi_square <= limit;
         let is_common = freedom < 1.0 || full.chi_square <= freedom;
         let is_better = |best: &Fit| full.chi_square < best.full.chi_square;
@@ -206,22 +214,25 @@ fn errors(problem: &Problem, full: &Solution) -> [f64; UNKNOWNS] {
     let least = problem.cost(&full.at);
     std::array::from_fn(|i| {
         let error = full.covariance[(i, i)].max(0.0).sqrt();
-        if i >= COUNT || error > TOLD * problem.doubts[i] {
+        if i >= COUNT || error > MAX_ERROR_SHARE * problem.prior_errors[i] {
             return error;
         }
         let rise = |side: f64| {
-            let along = |j: usize| full.at[j] + side * MOVES * full.covariance[(j, i)] / error;
+            let along = |j: usize| {
+                full.at[j] + side * MIN_DISTANCE_ERRORS * full.covariance[(j, i)] / error
+            };
             problem.cost(&std::array::from_fn(along)) - least
         };
         let rise = rise(1.0).min(rise(-1.0)).max(LEAST_RISE);
-        error * (MOVES / rise.sqrt()).max(1.0)
+        error * (MIN_DISTANCE_ERRORS / rise.sqrt()).max(1.0)
     })
 }
 
 /// Degrees of freedom of a fit of all unknowns: the figures less the share of each unknown that the measurements,
 /// and not its prior, determine.
 fn freedom(problem: &Problem, full: &Solution) -> f64 {
-    let told = (0..UNKNOWNS).map(|i| 1.0 - full.covariance[(i, i)] / problem.doubts[i].powi(2));
+    let told =
+        (0..UNKNOWNS).map(|i| 1.0 - full.covariance[(i, i)] / problem.prior_errors[i].powi(2));
     problem.figures() as f64 - told.sum::<f64>()
 }
 
@@ -234,16 +245,16 @@ fn choose(
     let mut verdicts = [Verdict::Moved; COUNT];
     let mut guess = full.at;
     let mut covariance = full.covariance.clone();
-    let before = problem.before();
+    let before = problem.start_unknowns();
     for key in 0..COUNT {
-        if errors[key] > TOLD * problem.doubts[key] {
-            verdicts[key] = Verdict::Untold;
+        if errors[key] > MAX_ERROR_SHARE * problem.prior_errors[key] {
+            verdicts[key] = Verdict::Undetermined;
             hold(key, &before, &mut guess, &mut covariance);
         }
     }
     loop {
         // The linear model comes first, since it costs nothing.
-        while let Some((key, verdict)) = next(&verdicts, &guess, &before, errors) {
+        while let Some((key, verdict)) = next_to_hold(&verdicts, &guess, &before, errors) {
             verdicts[key] = verdict;
             hold(key, &before, &mut guess, &mut covariance);
         }
@@ -255,14 +266,14 @@ fn choose(
         let free: Vec<usize> = (0..UNKNOWNS).filter(is_free).collect();
         let last = problem.fit(&free, &guess).ok_or(Trouble::NoFit)?;
         guess = last.at;
-        if next(&verdicts, &guess, &before, errors).is_none() {
+        if next_to_hold(&verdicts, &guess, &before, errors).is_none() {
             return Ok((last, verdicts));
         }
     }
 }
 
 /// The free key to hold next, and the reason.
-fn next(
+fn next_to_hold(
     verdicts: &[Verdict; COUNT],
     at: &[f64; UNKNOWNS],
     before: &[f64; UNKNOWNS],
@@ -271,8 +282,8 @@ fn next(
     let free = || (0..COUNT).filter(|&i| verdicts[i] == Verdict::Moved);
     let distance = |i: usize| (at[i] - before[i]).abs() / errors[i];
     let nearest = free().min_by(|&a, &b| distance(a).total_cmp(&distance(b)))?;
-    if distance(nearest) < MOVES {
-        return Some((nearest, Verdict::Right));
+    if distance(nearest) < MIN_DISTANCE_ERRORS {
+        return Some((nearest, Verdict::Unchanged));
     }
     let low = free().find(|&i| at[i] < KEYS[i].least)?;
     Some((low, Verdict::Impossible(at[low])))
@@ -298,13 +309,15 @@ fn hold(
 }
 
 /// Pairs of keys whose errors are strongly correlated, with the correlation.
-fn alike(covariance: &DMatrix<f64>) -> Vec<(&'static crate::Key, &'static crate::Key, f64)> {
+fn correlated_pairs(
+    covariance: &DMatrix<f64>,
+) -> Vec<(&'static crate::Key, &'static crate::Key, f64)> {
     let pairs = (0..COUNT).flat_map(|i| (0..i).map(move |j| (j, i)));
     let correlated = pairs.map(|(i, j)| {
         let scale = (covariance[(i, i)] * covariance[(j, j)]).sqrt();
         (&KEYS[i], &KEYS[j], covariance[(i, j)] / scale)
     });
-    let is_high = |(_, _, correlation): &(_, _, f64)| correlation.abs() > ALIKE;
+    let is_high = |(_, _, correlation): &(_, _, f64)| correlation.abs() > MIN_CORRELATION;
     correlated.filter(is_high).collect()
 }
 

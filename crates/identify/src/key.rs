@@ -1,6 +1,6 @@
 //! The keys of robot.toml that measured movements can determine.
 
-use lizard_robot::{Ground, plausible};
+use lizard_robot::{Ground, plausible_range};
 
 /// A number of robot.toml that changes the movement of the gaits.
 #[derive(Debug)]
@@ -8,13 +8,13 @@ pub struct Key {
     /// Full name in robot.toml.
     pub name: &'static str,
     /// Index of the number if the key is a list.
-    pub(crate) of_list: Option<usize>,
+    pub(crate) list_index: Option<usize>,
     /// Meaning of the number, in words.
-    pub words: &'static str,
+    pub meaning: &'static str,
     /// Unit, empty for a ratio.
     pub unit: &'static str,
     /// Another method to measure the number, in words.
-    pub otherwise: &'static str,
+    pub other_method: &'static str,
     /// Name of the assumption that gives the plausible range.
     assumed: &'static str,
     /// Step of the numerical derivative: large compared with the roughness of a model with dead bands and sticking
@@ -33,10 +33,10 @@ pub(crate) const COUNT: usize = 7;
 pub const KEYS: [Key; COUNT] = [
     Key {
         name: "leg.mount",
-        of_list: None,
-        words: "mounting of the legs",
+        list_index: None,
+        meaning: "mounting of the legs",
         unit: "deg",
-        otherwise: "a photo from above shows it",
+        other_method: "a photo from above shows it",
         assumed: "mounting of the legs",
         step: 1.0,
         least: f64::NEG_INFINITY,
@@ -44,10 +44,10 @@ pub const KEYS: [Key; COUNT] = [
     },
     Key {
         name: "leg.drive.play",
-        of_list: None,
-        words: "play of a leg",
+        list_index: None,
+        meaning: "play of a leg",
         unit: "deg",
-        otherwise: "trial 2 of docs/measure.md measures it",
+        other_method: "trial 2 of docs/measure.md measures it",
         assumed: "play of a leg",
         step: 0.1,
         least: 0.0,
@@ -55,10 +55,10 @@ pub const KEYS: [Key; COUNT] = [
     },
     Key {
         name: "body.centre",
-        of_list: Some(0),
-        words: "mass centre ahead",
+        list_index: Some(0),
+        meaning: "mass centre ahead",
         unit: "mm",
-        otherwise: "balance the robot on an edge",
+        other_method: "balance the robot on an edge",
         assumed: "mass centre ahead",
         step: 1.0,
         least: f64::NEG_INFINITY,
@@ -66,10 +66,10 @@ pub const KEYS: [Key; COUNT] = [
     },
     Key {
         name: "body.centre",
-        of_list: Some(1),
-        words: "mass centre to the left",
+        list_index: Some(1),
+        meaning: "mass centre to the left",
         unit: "mm",
-        otherwise: "balance the robot on an edge",
+        other_method: "balance the robot on an edge",
         assumed: "mass centre ahead",
         step: 1.0,
         least: f64::NEG_INFINITY,
@@ -77,10 +77,10 @@ pub const KEYS: [Key; COUNT] = [
     },
     Key {
         name: "feet.twist",
-        of_list: None,
-        words: "front left foot too long",
+        list_index: None,
+        meaning: "front left foot too long",
         unit: "mm",
-        otherwise: "a scale under each foot tells it, by docs/measure.md",
+        other_method: "a scale under each foot tells it, by docs/measure.md",
         assumed: "front left foot too long",
         step: 0.2,
         least: f64::NEG_INFINITY,
@@ -88,10 +88,10 @@ pub const KEYS: [Key; COUNT] = [
     },
     Key {
         name: "ground.friction",
-        of_list: None,
-        words: "friction of a pad",
+        list_index: None,
+        meaning: "friction of a pad",
         unit: "",
-        otherwise: "it cancels, but for the load of the servos; a board that is tilted until the robot slides gives it",
+        other_method: "it cancels, but for the load of the servos; a board that is tilted until the robot slides gives it",
         assumed: "friction of a pad",
         step: 0.05,
         least: 0.05,
@@ -99,10 +99,10 @@ pub const KEYS: [Key; COUNT] = [
     },
     Key {
         name: "ground.friction_back_over_forward",
-        of_list: None,
-        words: "friction backward over forward",
+        list_index: None,
+        meaning: "friction backward over forward",
         unit: "",
-        otherwise: "trial 1 of docs/measure.md measures it",
+        other_method: "trial 1 of docs/measure.md measures it",
         assumed: "friction backward over forward",
         step: 0.03,
         least: 0.1,
@@ -118,7 +118,7 @@ pub(crate) const RATIO: usize = 6;
 impl Key {
     /// The name with its index, as in `body.centre[0]`.
     pub fn full_name(&self) -> String {
-        match self.of_list {
+        match self.list_index {
             Some(index) => format!("{}[{index}]", self.name),
             None => self.name.to_owned(),
         }
@@ -134,8 +134,8 @@ impl Key {
     }
 
     /// Standard deviation of the value before anything is measured: half of its plausible range.
-    pub fn doubt(&self) -> f64 {
-        let [low, high] = plausible(self.assumed).expect("a test looks for each");
+    pub fn prior_error(&self) -> f64 {
+        let [low, high] = plausible_range(self.assumed).expect("a test looks for each");
         (high - low) / 2.0
     }
 }
@@ -148,10 +148,10 @@ mod tests {
     fn every_key_has_a_plausible_range_in_which_its_step_is_small() {
         for key in KEYS {
             assert!(
-                key.doubt() >= 5.0 * key.step,
+                key.prior_error() >= 5.0 * key.step,
                 "{} {}",
                 key.name,
-                key.doubt()
+                key.prior_error()
             );
         }
         let names = [PLAY, TWIST, RATIO].map(|key| KEYS[key].name);

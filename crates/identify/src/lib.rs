@@ -31,8 +31,8 @@ mod trouble;
 mod way;
 
 pub use card::Card;
-pub use identify::{Each, identify};
+pub use identify::{RunAll, identify};
 pub use key::{KEYS, Key};
 pub use outcome::{Found, Goodness, Identified, Row, Verdict};
 pub use trouble::Trouble;
-pub use way::{PARTS, Way};
+pub use way::{MeasuredMovement, PARTS};

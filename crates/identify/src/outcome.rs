@@ -2,7 +2,7 @@
 
 use crate::card::Card;
 use crate::key::Key;
-use crate::way::Way;
+use crate::way::MeasuredMovement;
 
 /// The identified keys and their agreement with the measurements.
 #[derive(Clone, Debug)]
@@ -12,7 +12,7 @@ pub struct Identified {
     /// The place of the card, and the standard errors of its parameters.
     pub card: [Card; 2],
     /// Pairs of keys whose errors are correlated by more than 0.8, with the correlation.
-    pub alike: Vec<(&'static Key, &'static Key, f64)>,
+    pub correlated: Vec<(&'static Key, &'static Key, f64)>,
     /// Agreement of the model with the measured movements.
     pub goodness: Goodness,
     /// The measured movements beside the model's.
@@ -40,9 +40,9 @@ pub enum Verdict {
     /// The measurements contradict the file by at least two standard errors.
     Moved,
     /// The file's value agrees with the measurements.
-    Right,
+    Unchanged,
     /// The measurements do not determine the key: its standard error stays above half of the prior one.
-    Untold,
+    Undetermined,
     /// The measurements ask for this value, which is below the least possible one; the file's value stays.
     Impossible(f64),
 }
@@ -72,7 +72,7 @@ pub struct Goodness {
 pub struct Row {
     /// The measured movement. A part that is undetermined, since two feet pull against two, has an infinite error
     /// and no weight.
-    pub way: Way,
+    pub way: MeasuredMovement,
     /// The model's movement with the file's values.
     pub before: [f64; 3],
     /// The model's movement with the new values.

@@ -13,7 +13,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::card::{self, Card};
 use crate::key::{COUNT, KEYS, PLAY};
-use crate::way::Way;
+use crate::way::MeasuredMovement;
 
 /// Values of the keys, in the order of [`KEYS`].
 pub(crate) type Values = [f64; COUNT];
@@ -23,26 +23,26 @@ pub(crate) const UNKNOWNS: usize = COUNT + card::COUNT;
 /// stick, so a small change of a key may shift a step by a frame.
 pub(crate) const MODEL_ERROR: f64 = 0.05;
 /// Promised reduction of the sum of squares below which a fit ends; a parameter is then within a third of its error.
-const ENOUGH: f64 = 0.1;
+const MIN_PROMISED_GAIN: f64 = 0.1;
 /// Promised reduction up to which a step that gains nothing is explained by the model's roughness and not by wrong
 /// derivatives.
-const ROUGH: f64 = 2.0;
+const ROUGHNESS_GAIN: f64 = 2.0;
 /// Largest number of steps of a fit, and of halvings of a step that gains nothing.
 const STEPS: usize = 12;
 const HALVINGS: usize = 2;
 /// Distances, in steps of a key, from the point of the derivatives beyond which they are recomputed: during a fit,
 /// and at its end.
-const FAR: f64 = 4.0;
-const NEAR: f64 = 1.0;
+const FAR_STEPS: f64 = 4.0;
+const NEAR_STEPS: f64 = 1.0;
 
 /// The measured movements of a robot, and a model of it.
 pub(crate) struct Problem<'a> {
     /// Parts that the model leaves undetermined have an infinite error.
-    ways: &'a [Way],
+    ways: &'a [MeasuredMovement],
     /// The file's values.
     pub start: Values,
     /// Prior standard deviations of the unknowns.
-    pub doubts: [f64; UNKNOWNS],
+    pub prior_errors: [f64; UNKNOWNS],
     predict: &'a dyn Fn(&Values) -> Vec<Travel>,
     computed: RefCell<Vec<(Values, Vec<Travel>)>>,
     /// Values at which the derivatives are computed.
@@ -61,16 +61,16 @@ pub(crate) struct Solution {
 
 impl<'a> Problem<'a> {
     pub fn new(
-        ways: &'a [Way],
+        ways: &'a [MeasuredMovement],
         start: Values,
         predict: &'a dyn Fn(&Values) -> Vec<Travel>,
     ) -> Self {
-        let keys = KEYS.iter().map(|key| key.doubt());
-        let mut doubts = keys.chain(Card::DOUBTS);
+        let keys = KEYS.iter().map(|key| key.prior_error());
+        let mut doubts = keys.chain(Card::PRIOR_ERRORS);
         Self {
             ways,
             start,
-            doubts: std::array::from_fn(|_| doubts.next().unwrap_or_default()),
+            prior_errors: std::array::from_fn(|_| doubts.next().unwrap_or_default()),
             predict,
             computed: RefCell::default(),
             slopes_at: RefCell::default(),
@@ -84,35 +84,35 @@ impl<'a> Problem<'a> {
     }
 
     /// Start values of the unknowns: the file's keys, and a card exactly in its place.
-    pub fn before(&self) -> [f64; UNKNOWNS] {
+    pub fn start_unknowns(&self) -> [f64; UNKNOWNS] {
         std::array::from_fn(|i| self.start.get(i).copied().unwrap_or_default())
     }
 
     /// The movements of the model, as seen on the card.
-    pub fn seen(&self, at: &[f64; UNKNOWNS]) -> Vec<[f64; 3]> {
+    pub fn predicted_on_card(&self, at: &[f64; UNKNOWNS]) -> Vec<[f64; 3]> {
         let (values, card) = split(at);
         let travels = self.travels(&values);
-        let seen = travels.into_iter().map(|travel| card.seen(travel));
+        let seen = travels.into_iter().map(|travel| card.card_travel(travel));
         seen.map(|seen| [seen.forward, seen.left, seen.turn])
             .collect()
     }
 
     /// Differences of the measured movements from the model's, in standard errors.
     pub fn differences(&self, at: &[f64; UNKNOWNS]) -> Vec<[f64; 3]> {
-        self.scaled(&self.seen(at), |part, mean| mean - part)
+        self.in_errors(&self.predicted_on_card(at), |part, mean| mean - part)
     }
 
     /// Sum of squares that a fit of all unknowns minimises: differences of movements, and deviations from the prior.
     pub fn cost(&self, at: &[f64; UNKNOWNS]) -> f64 {
         let ways = self.differences(at).into_flattened();
-        let before = self.before();
-        let known = (0..UNKNOWNS).map(|i| (at[i] - before[i]) / self.doubts[i]);
+        let before = self.start_unknowns();
+        let known = (0..UNKNOWNS).map(|i| (at[i] - before[i]) / self.prior_errors[i]);
         ways.into_iter().chain(known).map(|part| part * part).sum()
     }
 
-    fn scaled(&self, parts: &[[f64; 3]], of: impl Fn(f64, f64) -> f64) -> Vec<[f64; 3]> {
+    fn in_errors(&self, parts: &[[f64; 3]], of: impl Fn(f64, f64) -> f64) -> Vec<[f64; 3]> {
         let each = self.ways.iter().zip(parts);
-        let scaled = |(way, parts): (&Way, &[f64; 3])| {
+        let scaled = |(way, parts): (&MeasuredMovement, &[f64; 3])| {
             std::array::from_fn(|i| of(parts[i], way.mean[i]) / way.error[i].hypot(MODEL_ERROR))
         };
         each.map(scaled).collect()
@@ -153,14 +153,16 @@ impl<'a> Problem<'a> {
     /// The method is Gauss-Newton, with steps that are halved while they gain nothing. A finer search is useless,
     /// since the model is rough: servos have a dead band and pads stick.
     pub fn fit(&self, free: &[usize], guess: &[f64; UNKNOWNS]) -> Option<Solution> {
-        let before = self.before();
+        let before = self.start_unknowns();
         let mut at = before;
         for &unknown in free {
             at[unknown] = guess[unknown];
         }
         let residuals = |at: &[f64; UNKNOWNS]| {
             let ways = self.differences(at).into_flattened().into_iter();
-            let known = free.iter().map(|&i| (at[i] - before[i]) / self.doubts[i]);
+            let known = free
+                .iter()
+                .map(|&i| (at[i] - before[i]) / self.prior_errors[i]);
             DVector::from_iterator(3 * self.ways.len() + free.len(), ways.chain(known))
         };
         let mut here = residuals(&at);
@@ -171,9 +173,9 @@ impl<'a> Problem<'a> {
             covariance = slopes.tr_mul(&slopes).cholesky()?.inverse();
             let step = &covariance * &gradient;
             let promised = step.dot(&gradient);
-            if promised < ENOUGH {
+            if promised < MIN_PROMISED_GAIN {
                 // The errors come from the derivatives, which beyond a fold differ from those where the fit began.
-                match self.forget_slopes(split(&at).0, NEAR) {
+                match self.forget_slopes(split(&at).0, NEAR_STEPS) {
                     true => continue,
                     false => break,
                 }
@@ -190,8 +192,8 @@ impl<'a> Problem<'a> {
             match better.next() {
                 Some(next) => (at, here) = next,
                 // Derivatives from another point may lead the wrong way.
-                None if promised > ROUGH && self.forget_slopes(split(&at).0, 0.0) => {}
-                None if self.forget_slopes(split(&at).0, NEAR) => {}
+                None if promised > ROUGHNESS_GAIN && self.forget_slopes(split(&at).0, 0.0) => {}
+                None if self.forget_slopes(split(&at).0, NEAR_STEPS) => {}
                 None => break,
             }
         }
@@ -219,21 +221,21 @@ impl<'a> Problem<'a> {
     fn slopes(&self, free: &[usize], at: &[f64; UNKNOWNS]) -> DMatrix<f64> {
         let near = self.slopes_near(split(at).0);
         let base = std::array::from_fn(|i| near.get(i).copied().unwrap_or(at[i]));
-        let here = self.seen(&base);
+        let here = self.predicted_on_card(&base);
         let mut slopes = DMatrix::zeros(3 * self.ways.len() + free.len(), free.len());
         for (column, &unknown) in free.iter().enumerate() {
             let step = KEYS.get(unknown).map_or(0.1, |key| key.step);
             let mut moved = base;
             moved[unknown] += step;
-            let mut there = self.seen(&moved);
+            let mut there = self.predicted_on_card(&moved);
             for (there, here) in there.iter_mut().zip(&here) {
                 *there = std::array::from_fn(|i| (here[i] - there[i]) / step);
             }
-            let scaled = self.scaled(&there, |slope, _| slope).into_flattened();
+            let scaled = self.in_errors(&there, |slope, _| slope).into_flattened();
             for (row, slope) in scaled.iter().enumerate() {
                 slopes[(row, column)] = *slope;
             }
-            slopes[(scaled.len() + column, column)] = 1.0 / self.doubts[unknown];
+            slopes[(scaled.len() + column, column)] = 1.0 / self.prior_errors[unknown];
         }
         slopes
     }
@@ -241,7 +243,7 @@ impl<'a> Problem<'a> {
     /// The point at which to compute derivatives that are valid at these values.
     fn slopes_near(&self, values: Values) -> Values {
         let mut slopes_at = self.slopes_at.borrow_mut();
-        if let Some(at) = slopes_at.filter(|at| is_within(FAR, *at, values)) {
+        if let Some(at) = slopes_at.filter(|at| is_within(FAR_STEPS, *at, values)) {
             return at;
         }
         // At a least value, the derivatives are those of its feasible side.

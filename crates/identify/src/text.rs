@@ -29,7 +29,7 @@ impl Identified {
 fn with_key(text: &str, numbers: &[&Found]) -> Result<String, edit::NoSuchKey> {
     let name = numbers[0].key.name;
     let values: Vec<f64> = numbers.iter().map(|found| found.written()).collect();
-    let new = match numbers[0].key.of_list {
+    let new = match numbers[0].key.list_index {
         Some(_) => edit::with_numbers(text, name, &values)?,
         None => edit::with_number(text, name, values[0])?,
     };
@@ -54,7 +54,7 @@ impl Found {
 
     fn comment(&self) -> String {
         let digits = self.digits();
-        let place = match self.key.of_list {
+        let place = match self.key.list_index {
             Some(index) => format!("[{index}] "),
             None => String::new(),
         };

@@ -8,7 +8,7 @@ pub enum Trouble {
     NoSuchGait(String),
     /// The gait moves no servo.
     #[error("the gait `{0}` moves no servo, so its way tells nothing; leave it out")]
-    Still(String),
+    MovesNoServo(String),
     /// A figure is not finite, its error is negative, or the pace is not positive.
     #[error("the way of `{0}` has a figure that is no number; measure it again")]
     NoNumber(String),
@@ -16,7 +16,7 @@ pub enum Trouble {
     #[error(
         "in none of these gaits three feet decide the way; measure some that walk or turn, as walk, trot, crawl, left, right"
     )]
-    NoWay,
+    NothingDetermined,
     /// The fit has no minimum.
     #[error("no robot goes like this; look for a way with a wrong sign or unit")]
     NoFit,

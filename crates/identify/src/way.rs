@@ -5,7 +5,7 @@ pub const PARTS: [(&str, &str); 3] = [("ahead", "mm"), ("left", "mm"), ("turn", 
 
 /// Measured movement of the robot in one cycle of a gait.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Way {
+pub struct MeasuredMovement {
     /// Name of the gait.
     pub gait: String,
     /// Pace relative to the gait's own, which is 1.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::thread;
 
 use fastrand::Rng;
-use lizard_identify::{Found, Identified, KEYS, Verdict, Way, identify};
+use lizard_identify::{Found, Identified, KEYS, MeasuredMovement, Verdict, identify};
 use lizard_robot::{CheckedGait, Ground, Robot, Travel};
 
 /// Standard error of a measured mean, mm and deg: that of about eight cycles.
@@ -38,7 +38,7 @@ fn in_turn(count: usize, walk: &(dyn Fn(usize) -> Travel + Sync)) -> Vec<Travel>
 }
 
 /// Movements of the fastest gaits of a robot on another ground, as a film measures them.
-fn ways(robot: &Robot, ground: &Ground, rng: &mut Rng) -> Vec<Way> {
+fn filmed_movements(robot: &Robot, ground: &Ground, rng: &mut Rng) -> Vec<MeasuredMovement> {
     let far = |gait: &CheckedGait| {
         let way = robot.predict(gait);
         let [ahead, turn] = [way.forward, way.turn].map(|part| part.unwrap_or(0.0).abs());
@@ -54,7 +54,7 @@ fn ways(robot: &Robot, ground: &Ground, rng: &mut Rng) -> Vec<Way> {
             left,
             turn,
         } = gait.driven(ground, &motors, 1.0);
-        Way {
+        MeasuredMovement {
             gait: gait.name().to_owned(),
             pace: 1.0,
             mean: [forward, left, turn].map(|part| part + ERROR * normal(rng)),
@@ -87,7 +87,7 @@ impl Trial {
         for (key, change) in changes.into_iter().enumerate() {
             set(&mut ground, key, change);
         }
-        let ways = ways(&robot, &ground, &mut rng);
+        let ways = filmed_movements(&robot, &ground, &mut rng);
         Self {
             name: format!(
                 "{} {seed}",
@@ -148,7 +148,7 @@ fn keys_that_were_changed_are_found_within_two_errors_and_right_ones_stay() {
                 found.verdict,
                 if is_near { "" } else { " !" }
             );
-            if found.verdict == Verdict::Untold {
+            if found.verdict == Verdict::Undetermined {
                 continue;
             }
             match change == 0.0 {

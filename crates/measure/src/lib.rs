@@ -21,7 +21,7 @@ mod watched_film;
 pub use board::height_of_board;
 pub use expected::expected;
 pub use named::{Gaits, NamedWalk};
-pub use part::{AGREES, PARTS, Part, verdict};
+pub use part::{MAX_AGREEING_ERRORS, PARTS, Part, verdict};
 pub use report::{GaitReport, Report, Within};
 pub use sheet::Paper;
 pub use watched_film::WatchedFilm;

@@ -94,7 +94,7 @@ impl<'a> Gaits<'a> {
         let walks: Vec<Walk> = films.iter().flat_map(|film| film.walks(rest)).collect();
         let names = self.named.len();
         if names > 1 && names != walks.len() {
-            return Err(self.other_number(&walks, rest));
+            return Err(self.count_mismatch_message(&walks, rest));
         }
         let measured = walks.into_iter().enumerate().map(|(i, walk)| {
             let gait = match names {
@@ -102,14 +102,17 @@ impl<'a> Gaits<'a> {
                 1 => 0,
                 _ => i,
             };
-            let own = &self.known()[gait];
-            let measured = walk.film.watched.measure(&own.expected, Some(walk.during));
+            let candidate = &self.known()[gait];
+            let measured = walk
+                .film
+                .watched
+                .measure(&candidate.expected, Some(walk.during));
             let measured = measured.map_err(|trouble| {
                 format!(
                     "{}, {}: {}",
-                    walk.at(),
-                    own.name(),
-                    self.not(walk, own, trouble)
+                    walk.label(),
+                    candidate.name(),
+                    self.mismatch_message(walk, candidate, trouble)
                 )
             })?;
             Ok(NamedWalk {
@@ -135,10 +138,10 @@ impl<'a> Gaits<'a> {
         let own = own.ok_or_else(|| Trouble::NoGait.to_string())?;
         let walk = Walk {
             film,
-            during: during.or_else(|| film.all()).unwrap_or_default(),
+            during: during.or_else(|| film.duration()).unwrap_or_default(),
         };
         let measured = film.watched.measure(&own.expected, during);
-        let measured = measured.map_err(|trouble| self.not(walk, own, trouble))?;
+        let measured = measured.map_err(|trouble| self.mismatch_message(walk, own, trouble))?;
         Ok(NamedWalk {
             walk,
             gait,
@@ -169,7 +172,7 @@ impl<'a> Gaits<'a> {
             true => "; name the gait of each walk",
             false => "",
         };
-        Err(format!("{}: {why}{hint}", walk.at()))
+        Err(format!("{}: {why}{hint}", walk.label()))
     }
 
     /// The gait of robot.toml that a walk resembles.
@@ -179,7 +182,7 @@ impl<'a> Gaits<'a> {
     }
 
     /// Name of the gait that a walk clearly resembles.
-    pub(crate) fn like(&self, walk: Walk) -> Option<&'a str> {
+    pub(crate) fn resembled_gait(&self, walk: Walk) -> Option<&'a str> {
         match self.likeness(walk) {
             Likeness::One(number) => Some(self.all()[number].name()),
             _ => None,
@@ -187,9 +190,9 @@ impl<'a> Gaits<'a> {
     }
 
     /// The message for a walk that is not of its gait, with the gait that it resembles instead.
-    fn not(&self, walk: Walk, own: &Candidate, trouble: Trouble) -> String {
+    fn mismatch_message(&self, walk: Walk, own: &Candidate, trouble: Trouble) -> String {
         let like = match trouble {
-            Trouble::NotThisGait { .. } | Trouble::AnotherPace { .. } => self.like(walk),
+            Trouble::NotThisGait { .. } | Trouble::AnotherPace { .. } => self.resembled_gait(walk),
             _ => None,
         };
         let like = like.filter(|name| *name != own.name());
@@ -198,7 +201,7 @@ impl<'a> Gaits<'a> {
     }
 
     /// The message for films whose number of walks differs from the number of names.
-    fn other_number(&self, walks: &[Walk], rest: f64) -> String {
+    fn count_mismatch_message(&self, walks: &[Walk], rest: f64) -> String {
         let names: Vec<&str> = self.named.iter().map(Candidate::name).collect();
         let mut text = format!(
             "{} walks between rests of {rest:.1} s or more, and --gait names {}: {}",
@@ -209,12 +212,12 @@ impl<'a> Gaits<'a> {
         let mut missing = names;
         let mut is_clear = true;
         for walk in walks {
-            let like = self.like(*walk);
+            let like = self.resembled_gait(*walk);
             let [from, to] = walk.during;
             let _ = write!(
                 text,
                 "\n  {}, {:.1} s long: like {}",
-                walk.at(),
+                walk.label(),
                 to - from,
                 like.unwrap_or("no gait clearly")
             );

@@ -4,7 +4,7 @@ use lizard_film::Mean;
 use serde::Serialize;
 
 /// Largest distance from the prediction, in standard errors, that counts as agreement.
-pub const AGREES: f64 = 2.0;
+pub const MAX_AGREEING_ERRORS: f64 = 2.0;
 /// The names of a movement's parts.
 pub const PARTS: [&str; 3] = ["ahead, mm", "left, mm", "turn, deg"];
 
@@ -26,7 +26,7 @@ pub struct Part {
 
 /// Agreement in a word, or by how many standard errors a figure differs.
 pub fn verdict(differs: f64) -> String {
-    if differs.abs() <= AGREES {
+    if differs.abs() <= MAX_AGREEING_ERRORS {
         return "agrees".to_owned();
     }
     let word = if differs > 0.0 { "more" } else { "less" };
@@ -43,7 +43,7 @@ impl Part {
             error: mean.error,
             predicted,
             differs,
-            agrees: differs.map(|differs| differs.abs() <= AGREES),
+            agrees: differs.map(|differs| differs.abs() <= MAX_AGREEING_ERRORS),
         }
     }
 

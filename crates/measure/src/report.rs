@@ -14,7 +14,7 @@ use crate::watched_film::WatchedFilm;
 
 /// Like `AGREES`, for the largest difference within a cycle: the largest of 72 random differences exceeds it in one
 /// of 30 films.
-const ALL_AGREE: f64 = 3.5;
+const MAX_AGREEING_ERRORS_OF_ALL: f64 = 3.5;
 /// The result of a measurement; its fields have the names of `--json`.
 #[derive(Debug, Serialize)]
 pub struct Report<'a> {
@@ -130,7 +130,11 @@ impl<'a> Span<'a> {
         let [from, to] = own.walk.during;
         let name = gaits.known()[own.gait].name();
         // The likeness matters only if the walk differs from its prediction.
-        let like = if differs { gaits.like(own.walk) } else { None };
+        let like = if differs {
+            gaits.resembled_gait(own.walk)
+        } else {
+            None
+        };
         Self {
             film: &own.walk.film.name,
             from,
@@ -154,7 +158,7 @@ impl Farthest {
             part: PARTS[axis],
             difference: point.measured[axis].mean - point.predicted[axis],
             differs,
-            agrees: differs.abs() <= ALL_AGREE,
+            agrees: differs.abs() <= MAX_AGREEING_ERRORS_OF_ALL,
         })
     }
 
@@ -328,7 +332,7 @@ impl<'a> Report<'a> {
 
     /// Adds the movements by MuJoCo, which are known at full pace for the robots of the project's own files. `text`
     /// is the content of the robot's file.
-    pub fn beside_mujoco(mut self, text: &str) -> Self {
+    pub fn with_mujoco(mut self, text: &str) -> Self {
         for gait in self.gaits.iter_mut().filter(|gait| gait.speed == 100) {
             gait.mujoco = mujoco(text, gait.gait);
         }

@@ -18,14 +18,14 @@ impl WatchedFilm {
     pub(crate) fn walks(&self, rest: f64) -> Vec<Walk<'_>> {
         let mut walks = self.watched.walks(rest);
         if walks.is_empty() {
-            walks.extend(self.all());
+            walks.extend(self.duration());
         }
         let walk = |during| Walk { film: self, during };
         walks.into_iter().map(walk).collect()
     }
 
     /// Beginning and end of the film, s.
-    pub(crate) fn all(&self) -> Option<[f64; 2]> {
+    pub(crate) fn duration(&self) -> Option<[f64; 2]> {
         match &self.watched.path[..] {
             [first, .., last] => Some([first.seconds, last.seconds]),
             _ => None,
@@ -60,7 +60,7 @@ pub(crate) struct Walk<'f> {
 
 impl Walk<'_> {
     /// The walk's place in a message: the film and the times.
-    pub(crate) fn at(&self) -> String {
+    pub(crate) fn label(&self) -> String {
         let [from, to] = self.during;
         format!("{}, {from:.1} to {to:.1} s", self.film.name)
     }

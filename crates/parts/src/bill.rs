@@ -18,7 +18,7 @@ use crate::layers::fitting::{BATTERIES, Example, Fitting};
 use crate::layers::outline::Outline;
 use crate::part::{Part, volume};
 use crate::price::Price;
-use loose::{ALWAYS, INPUTS, RADIO, Row};
+use loose::{INPUTS, LOOSE_ITEMS, RADIO, Row};
 
 /// Mass per volume of a printed part, g/mm^3: PLA of 1.24 g/cm^3 with three lines of wall and a third of infill.
 /// The sum of all parts is within a tenth of PrusaSlicer's.
@@ -250,7 +250,7 @@ impl Bill {
         let bought = list.into_iter();
         let bought =
             bought.map(|(what, (count, grams, price))| Item::bought(count, what, grams, price));
-        let loose_items = ALWAYS.map(Item::loose);
+        let loose_items = LOOSE_ITEMS.map(Item::loose);
         grams += loose_items.iter().map(Item::all).sum::<f64>();
         let bought: Vec<_> = bought.chain(loose_items).collect();
         Self {
@@ -331,15 +331,15 @@ impl fmt::Display for Bill {
                  `kind = \"{kind}\"` under `[leg.drive]` in robot.toml this guide is about them."
             )?;
         }
-        writeln!(f, "\nTo buy:\n\n{}", to_buy(&self.bought))?;
+        writeln!(f, "\nTo buy:\n\n{}", buying_table(&self.bought))?;
         writeln!(f, "{}\n\n{SERVOS}", self.prices())?;
         writeln!(
             f,
             "\nOnly to drive it without a cable, by radio:\n\n{}",
-            to_buy(&self.radio)
+            buying_table(&self.radio)
         )?;
         if !self.inputs.is_empty() {
-            let rows = to_buy(&self.inputs);
+            let rows = buying_table(&self.inputs);
             writeln!(f, "Only for the inputs and strips of robot.toml:\n\n{rows}")?;
         }
         writeln!(
@@ -379,7 +379,7 @@ const PADS: &str = "The pads are of TPU (95A), all four of one roll: the flat si
 const SERVOS: &str = "Take plain analog servos, all four of one make: by the model, digital ones lose 15 % of `walk`, and one with a light rotor more than half.";
 
 /// Rows to buy as a table.
-pub fn to_buy(items: &[Item]) -> String {
+pub fn buying_table(items: &[Item]) -> String {
     let mut text = "| pieces | what | price |\n|---|---|---|\n".to_owned();
     for item in items {
         let price = item.price.map(|price| price.to_string());
@@ -411,11 +411,11 @@ pub fn places(battery: [f64; 3]) -> String {
         let (room, examples) = (size(facts.size), list(&mut facts.examples.into_iter()));
         text += &format!("| {name} | {place} | {room} | {hold} | {examples} |\n");
     }
-    text + OTHERS
+    text + SIZES_TEXT
 }
 
 /// The text below the table of places: the sources of the sizes, and the sizes of everything else.
-const OTHERS: &str = "
+const SIZES_TEXT: &str = "
 `~` is a usual size in shops, of which no drawing was found. The other sizes are of data sheets or standards, with their tolerances.
 
 | everything else | size, mm, by a standard or as common products have it |

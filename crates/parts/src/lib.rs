@@ -54,7 +54,7 @@ mod proof;
 mod unfit;
 mod weight;
 
-pub use bill::{Bill, Item, places, to_buy};
+pub use bill::{Bill, Item, buying_table, places};
 pub use bodies::assembly::Assembly;
 pub use bodies::layout::Layout;
 pub use files::coupon::coupon;
@@ -76,5 +76,5 @@ pub use order::steps::{ExtraView, Stage, Step, TurningPlace, steps};
 pub use part::{Part, PrintToBody};
 pub use price::Price;
 pub use proof::clearance::Clearance;
-pub use proof::{Answer, Clash, ENOUGH, MIN_GAP_MM, NearestPair, Proof, Questions};
+pub use proof::{Answer, Clash, FAR_MM, MIN_GAP_MM, NearestPair, Proof, Questions};
 pub use unfit::{Meeting, Unfit};

@@ -102,8 +102,8 @@ impl Assembly {
     /// # Errors
     /// Returns the first dimension that does not fit, else the two parts that overlap most, else a screw that
     /// cannot be reached.
-    pub fn fits(&self) -> Result<(), Unfit> {
-        self.measures_fit()?;
+    pub fn check_fit(&self) -> Result<(), Unfit> {
+        self.check_measures()?;
         self.prove(|_, _| ()).judge()?;
         self.access_poses(&steps(self.robot().drive().strut().is_some()))?;
         Ok(())
@@ -113,7 +113,7 @@ impl Assembly {
     ///
     /// # Errors
     /// Returns the first dimension that does not fit.
-    pub fn measures_fit(&self) -> Result<(), Unfit> {
+    pub fn check_measures(&self) -> Result<(), Unfit> {
         let (robot, stack) = (self.robot(), self.stack());
         let (parts, drive) = (robot.parts(), robot.drive());
         let refuse = |message: String| Err(Unfit::Measure(message));
@@ -191,17 +191,17 @@ impl Assembly {
                 return Err(Unfit::Surface(body.name.clone()));
             }
         }
-        self.none_is_in_another()
+        self.check_overlaps()
     }
 
     /// Checks that no two bodies that move together overlap.
-    fn none_is_in_another(&self) -> Result<(), Unfit> {
+    fn check_overlaps(&self) -> Result<(), Unfit> {
         /// Overlap allowed for press fits, mm.
         const TOUCH: f64 = 0.02;
         let bodies = self.bodies();
         for (i, a) in bodies.iter().enumerate() {
             for b in bodies[i + 1..].iter().filter(|b| b.mount == a.mount) {
-                let air = air(self.outside_threads(a), self.outside_threads(b));
+                let air = clearance(self.outside_threads(a), self.outside_threads(b));
                 if air < -TOUCH {
                     return Err(Unfit::Together {
                         first: a.name.clone(),
@@ -229,11 +229,11 @@ impl Assembly {
 
 /// The least distance of two bodies' layers at the heights that they share, or inside each other's holes, mm;
 /// negative if they overlap.
-fn air(a: &[Prism], b: &[Prism]) -> f64 {
+fn clearance(a: &[Prism], b: &[Prism]) -> f64 {
     let within = |shape: &Shape, holes: &[Shape], beside: f64| {
         let depths = holes
             .iter()
-            .map(|hole| shape.within(hole, Vector::default()));
+            .map(|hole| shape.depth_in(hole, Vector::default()));
         depths.fold(beside, f64::max)
     };
     let mut smallest = f64::INFINITY;

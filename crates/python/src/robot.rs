@@ -208,7 +208,7 @@ impl Robot {
     fn mjcf(&self, py: Python<'_>, shapes: bool) -> PyResult<String> {
         py.detach(|| {
             let assembly = Assembly::new(&self.0);
-            assembly.measures_fit().map_err(refused)?;
+            assembly.check_measures().map_err(refused)?;
             let neutral = self.0.lizard().solve(&self.0.neutral()).map_err(refused)?;
             let scene = Scene {
                 shapes,

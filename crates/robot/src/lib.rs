@@ -37,7 +37,9 @@ mod testing;
 mod units;
 
 pub use calibration::{Calibration, ServoSettings, Transfer};
-pub use checks::{Audit, CheckedGait, Effort, LeastMargin, Peak, TIGHT, TableError, Walked};
+pub use checks::{
+    Audit, CheckedGait, Effort, HIGH_LINE_SHARE, LeastMargin, Peak, TableError, Walked,
+};
 pub use file::{Error, MAX_FILE_BYTES, edit, explain_mistake};
 pub use gaits::{Bars, Harmonic, Path, PathLeg, Routine, Stride, Waveform};
 pub use lizard_contact::{
@@ -52,7 +54,7 @@ pub use measures::{
 pub use reports::verdict;
 pub use reports::{
     Assumptions, Extreme, MovementRange, PACES, Report, Round, Row, Sensitivity, ServoTable,
-    SpringCost, UNDECIDED, WITHOUT_CONTACTS, plausible,
+    SpringCost, UNDECIDED, WITHOUT_CONTACTS, plausible_range,
 };
 pub use robot::Robot;
 pub use tables::{CellMaps, CoreRobot, flash};

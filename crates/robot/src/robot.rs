@@ -10,7 +10,7 @@ use lizard_core::numbers::section::{Content, MAX_NAME_BYTES, SPACE};
 use lizard_kinematics::{Limits, Lizard, Pose, Solution, wrap};
 use toml::de::DeTable;
 
-use crate::checks::{CheckedGait, Effort, TIGHT};
+use crate::checks::{CheckedGait, Effort, HIGH_LINE_SHARE};
 use crate::file::{self, Checked, Error, Fault, Section};
 use crate::gaits::{Routine, define, routine};
 use crate::measures::servo::FORWARD;
@@ -100,12 +100,12 @@ impl Robot {
         let efforts: Vec<Effort> = robot.gaits().iter().map(effort).collect();
         let volts = robot.servo_type().volts;
         let lines = efforts.iter().map(|effort| effort.line_share(1.0, 1.0));
-        rail.slow_down(lines.fold(0.0, f64::max), TIGHT, volts);
+        rail.slow_down(lines.fold(0.0, f64::max), HIGH_LINE_SHARE, volts);
         // Using a share of the line at one supply is the same as using the whole line at that share of the supply.
         let [_, stop, _] = rail.thresholds;
         let paces = efforts
             .iter()
-            .map(|effort| effort.pace(TIGHT * stop / volts));
+            .map(|effort| effort.pace(HIGH_LINE_SHARE * stop / volts));
         measures.supplies.limit_pace(paces.fold(1.0, f64::min));
         Self::with_measures(name, measures, &root)
     }
@@ -279,7 +279,7 @@ impl Robot {
 
     /// The length, inside its hooks, of a spring mounted in a strut, mm.
     pub fn hung(&self) -> f64 {
-        measures::hung(self.legs(), self.parts())
+        measures::mounted_spring_length(self.legs(), self.parts())
     }
 
     /// The legs seen from above, in servo order.

@@ -32,7 +32,7 @@ pub fn all() -> impl Iterator<Item = (&'static str, Robot)> {
 }
 
 /// Reads the text of a robot's file up to its gaits.
-pub fn body(name: &str) -> String {
+pub fn text_before_gaits(name: &str) -> String {
     let text = text(name);
     let gaits = text.find("[gait.stand]").expect("stand");
     text[..gaits].to_string()

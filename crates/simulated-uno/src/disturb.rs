@@ -8,7 +8,7 @@ impl Uno {
     /// Interrupts the program for `cycles`. Meanwhile it executes nothing, but flags are set and bytes arrive. This
     /// interrupt has priority over all of the chip's own. It is served now, or as soon as interrupts are enabled. A
     /// second call before that replaces the first.
-    pub fn hold(&mut self, cycles: u64) {
+    pub fn block_interrupts(&mut self, cycles: u64) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim counts the cycles.
         unsafe { ffi::uno_hold(self.raw, cycles) }
     }

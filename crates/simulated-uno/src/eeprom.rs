@@ -102,7 +102,7 @@ impl Uno {
     }
 
     /// Cancels a [`Uno::cut_power`] that has not happened yet.
-    pub fn keep_power(&mut self) {
+    pub fn cancel_power_cut(&mut self) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim forgets what
         // `cut_power` has set.
         unsafe { ffi::uno_keep_power(self.raw) }

@@ -137,7 +137,7 @@ impl Port {
     }
 
     fn tick(&mut self, uno: &mut Uno) -> io::Result<()> {
-        let look = self.pty.look()?;
+        let look = self.pty.poll_state()?;
         self.is_open = look.is_open;
         if look.was_opened {
             self.unread.clear();
@@ -159,7 +159,7 @@ impl Port {
             None => uno.send(&bytes[..read]),
         }
         if *uno.state() == State::Alive {
-            uno.run_until_cycle(self.due(uno.cycle()));
+            uno.run_until_cycle(self.target_cycle(uno.cycle()));
         }
         uno.forget_received();
         let arrived = match &mut self.radio {
@@ -183,7 +183,7 @@ impl Port {
     }
 
     /// The cycle that the chip should have reached by now.
-    fn due(&mut self, cycle: u64) -> u64 {
+    fn target_cycle(&mut self, cycle: u64) -> u64 {
         let now = Instant::now();
         let (anchor_time, anchor_cycle) = *self.anchor.get_or_insert((now, cycle));
         let due = anchor_cycle + cycles(now - anchor_time);

@@ -41,13 +41,13 @@ pub(crate) struct Look {
 #[derive(Debug)]
 pub(crate) struct Pty {
     ours: File,
-    opens: OwnedFd,
+    open_events: OwnedFd,
     path: PathBuf,
     /// True if the port was open at the last check.
     was_open: bool,
     /// True if a program has closed the port but the port is still open. The system may report a new opening only
     /// at the next check.
-    in_doubt: bool,
+    may_be_reopened: bool,
 }
 
 impl Pty {
@@ -81,10 +81,10 @@ impl Pty {
         inotify::add_watch(&opens, &path, of_interest)?;
         Ok(Self {
             ours,
-            opens,
+            open_events: opens,
             path,
             was_open: false,
-            in_doubt: false,
+            may_be_reopened: false,
         })
     }
 
@@ -97,9 +97,9 @@ impl Pty {
     ///
     /// # Errors
     /// Fails if the system is out of memory.
-    pub(crate) fn look(&mut self) -> io::Result<Look> {
+    pub(crate) fn poll_state(&mut self) -> io::Result<Look> {
         let was_open = self.was_open;
-        let (mut closed, mut opened) = (!was_open || self.in_doubt, false);
+        let (mut closed, mut opened) = (!was_open || self.may_be_reopened, false);
         let mut closing = false;
         self.events(|event| {
             if event.contains(ReadFlags::OPEN) {
@@ -119,7 +119,7 @@ impl Pty {
             open = now;
         }
         self.was_open = open;
-        self.in_doubt = closing && open && !opened;
+        self.may_be_reopened = closing && open && !opened;
         Ok(Look {
             is_open: open,
             was_opened: opened,
@@ -136,7 +136,7 @@ impl Pty {
 
     fn events(&self, mut on_event: impl FnMut(ReadFlags)) -> io::Result<()> {
         let mut space = [MaybeUninit::uninit(); 512];
-        let mut events = inotify::Reader::new(&self.opens, &mut space);
+        let mut events = inotify::Reader::new(&self.open_events, &mut space);
         loop {
             match events.next() {
                 Ok(event) => on_event(event.events()),
@@ -185,7 +185,7 @@ impl Pty {
         match self.ours.read(into) {
             // EIO: no program has the port open, and nothing is left to read.
             Err(error) if error.raw_os_error() == Some(EIO) => Ok(0),
-            other => or_nothing(other),
+            other => bytes_or_zero(other),
         }
     }
 
@@ -194,7 +194,7 @@ impl Pty {
     /// # Errors
     /// Returns the system's error if the pseudo terminal fails.
     pub(crate) fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        or_nothing(self.ours.write(bytes))
+        bytes_or_zero(self.ours.write(bytes))
     }
 }
 
@@ -224,7 +224,7 @@ fn other_end(path: &Path, access: OFlags) -> rustix::io::Result<OwnedFd> {
 const EIO: i32 = rustix::io::Errno::IO.raw_os_error();
 
 /// Converts the result of a transfer to a number of bytes, which is 0 if no transfer is possible at the moment.
-fn or_nothing(transfer: io::Result<usize>) -> io::Result<usize> {
+fn bytes_or_zero(transfer: io::Result<usize>) -> io::Result<usize> {
     match transfer {
         Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => {
             Ok(0)

@@ -39,7 +39,7 @@ pub struct Air {
     /// The share of packets that are lost, 0 to 1.
     pub loss: f64,
     /// The mean duration of a link, ms; 0 if it does not end.
-    pub holds: u64,
+    pub mean_link_ms: u64,
     /// True if the module reports in the line when the link begins and ends.
     pub reports_link: bool,
     /// The seed of the random numbers.
@@ -52,7 +52,7 @@ impl Default for Air {
         Self {
             baud: 9600.0,
             loss: 0.01,
-            holds: 20_000,
+            mean_link_ms: 20_000,
             reports_link: true,
             seed: 0,
         }
@@ -92,7 +92,7 @@ impl Flight {
     }
 
     /// Cuts the transmission: some bytes of the next packet arrive, the other packets are lost.
-    fn cut(&mut self, random: &mut fastrand::Rng) -> Vec<u8> {
+    fn take_remains(&mut self, random: &mut fastrand::Rng) -> Vec<u8> {
         let packets = std::mem::take(&mut self.packets);
         let mut next = packets.into_iter().next().unwrap_or_default().1;
         next.truncate(random.usize(..=next.len()));
@@ -110,7 +110,7 @@ pub struct Radio {
     /// The chip's bytes that wait for a packet, and the cycle at which the first of them came.
     gathered: (Vec<u8>, u64),
     /// The cycle at which the link ends next or, while there is no link, begins again.
-    turns: Option<u64>,
+    next_change: Option<u64>,
     is_in_reach: bool,
     has_left: bool,
 }
@@ -125,11 +125,11 @@ impl Radio {
             to_uno: Flight::default(),
             to_phone: Flight::default(),
             gathered: (Vec::new(), 0),
-            turns: None,
+            next_change: None,
             is_in_reach: true,
             has_left: false,
         };
-        radio.turns = radio.holds(0);
+        radio.next_change = radio.next_link_end(0);
         radio
     }
 
@@ -155,7 +155,7 @@ impl Radio {
     /// Ends the link permanently: the phone moves out of range.
     pub fn leave(&mut self, now: u64) {
         self.has_left = true;
-        self.turns = self.is_in_reach.then_some(now);
+        self.next_change = self.is_in_reach.then_some(now);
     }
 
     /// Delivers the bytes that have arrived at the chip by now, and returns those for the phone. Must be called
@@ -183,8 +183,8 @@ impl Radio {
     /// Takes the bytes that the module has received from the chip, and returns the bytes that have
     /// arrived by now at the chip and at the phone.
     pub fn pass(&mut self, received: &[u8], now: u64) -> [Vec<u8>; 2] {
-        if self.turns.is_some_and(|turn| turn <= now) {
-            return self.turn(now);
+        if self.next_change.is_some_and(|turn| turn <= now) {
+            return self.toggle_link(now);
         }
         let to_uno = self.to_uno.arrive(now);
         if !self.is_in_reach {
@@ -203,9 +203,9 @@ impl Radio {
     }
 
     /// Ends the link or begins it again.
-    fn turn(&mut self, now: u64) -> [Vec<u8>; 2] {
+    fn toggle_link(&mut self, now: u64) -> [Vec<u8>; 2] {
         self.is_in_reach = !self.is_in_reach;
-        let mut to_uno = self.to_uno.cut(&mut self.random);
+        let mut to_uno = self.to_uno.take_remains(&mut self.random);
         if self.air.reports_link {
             to_uno.extend(if self.is_in_reach {
                 b"OK+CONN"
@@ -214,17 +214,17 @@ impl Radio {
             });
         }
         if self.is_in_reach {
-            self.turns = self.holds(now);
+            self.next_change = self.next_link_end(now);
             return [to_uno, Vec::new()];
         }
         self.gathered.0.clear();
         let back = now + self.random.u64(OUTAGE_MS) * CYCLES_PER_MS;
-        self.turns = (!self.has_left).then_some(back);
-        [to_uno, self.to_phone.cut(&mut self.random)]
+        self.next_change = (!self.has_left).then_some(back);
+        [to_uno, self.to_phone.take_remains(&mut self.random)]
     }
 
-    fn holds(&mut self, now: u64) -> Option<u64> {
-        let max = 2 * self.air.holds * CYCLES_PER_MS;
+    fn next_link_end(&mut self, now: u64) -> Option<u64> {
+        let max = 2 * self.air.mean_link_ms * CYCLES_PER_MS;
         (max > 0).then(|| now + self.random.u64(..max))
     }
 }

@@ -46,7 +46,7 @@ pub struct Wire {
     /// The bytes of each sender, in order.
     talkers: [VecDeque<Frame>; 2],
     /// The cycle from which the receiver looks for the next byte.
-    free: f64,
+    idle_from: f64,
 }
 
 impl Wire {
@@ -56,7 +56,7 @@ impl Wire {
         Self {
             bits: rates.map(|baud| FREQUENCY as f64 / baud),
             talkers: [VecDeque::new(), VecDeque::new()],
-            free: f64::NEG_INFINITY,
+            idle_from: f64::NEG_INFINITY,
         }
     }
 
@@ -87,7 +87,7 @@ impl Wire {
             let sampled = |index: u8| self.is_high(start + (f64::from(index) + 1.5) * bit);
             let byte = (0..8).fold(0, |byte, index| byte | u8::from(sampled(index)) << index);
             received.push(sampled(8).then_some(byte));
-            self.free = end;
+            self.idle_from = end;
             for talker in &mut self.talkers {
                 while talker.front().is_some_and(|frame| frame.end() <= end) {
                     talker.pop_front();
@@ -99,11 +99,11 @@ impl Wire {
 
     /// Returns the next time at which the wire goes from high to low.
     fn next_fall(&self) -> Option<f64> {
-        let edges = self.near().flat_map(|frame| {
+        let edges = self.pending_frames().flat_map(|frame| {
             (0..9).map(|index| (frame.start + f64::from(index) * frame.bit, frame.bit))
         });
         edges
-            .filter(|(at, _)| *at > self.free)
+            .filter(|(at, _)| *at > self.idle_from)
             .filter(|(at, bit)| {
                 // Samples on both sides of the edge, since the sums are rounded.
                 let beside = bit / 100.0;
@@ -114,14 +114,14 @@ impl Wire {
     }
 
     /// Returns the bytes that may be on the wire until the next one is read.
-    fn near(&self) -> impl Iterator<Item = &Frame> {
+    fn pending_frames(&self) -> impl Iterator<Item = &Frame> {
         self.talkers
             .iter()
             .flat_map(|talker| talker.iter().take(NEAR_BYTES))
     }
 
     fn is_high(&self, time: f64) -> bool {
-        self.near().all(|frame| frame.is_high(time))
+        self.pending_frames().all(|frame| frame.is_high(time))
     }
 }
 
@@ -140,7 +140,7 @@ mod tests {
         wire.receive(1_000_000, 115_200.0)
     }
 
-    fn whole(text: &[u8]) -> Vec<Option<u8>> {
+    fn without_errors(text: &[u8]) -> Vec<Option<u8>> {
         text.iter().copied().map(Some).collect()
     }
 
@@ -148,7 +148,7 @@ mod tests {
     fn a_single_sender_is_read_correctly() {
         let all: Vec<u8> = (0..=255).collect();
         for talker in [0, 1] {
-            assert_eq!(received(&[(talker, &all, 70)]), whole(&all));
+            assert_eq!(received(&[(talker, &all, 70)]), without_errors(&all));
         }
     }
 
@@ -159,14 +159,14 @@ mod tests {
             (1, b"stop\n", 5 * BYTE),
             (0, b"?\n", 10 * BYTE + 40),
         ];
-        assert_eq!(received(&writes), whole(b"walk\nstop\n?\n"));
+        assert_eq!(received(&writes), without_errors(b"walk\nstop\n?\n"));
     }
 
     #[test]
     fn simultaneous_bits_of_two_senders_are_combined_by_and() {
         let writes: [(usize, &[u8], u64); 2] = [(0, b"walk\n", 9), (1, b"stop\n", 9)];
         let both = std::array::from_fn::<u8, 5, _>(|at| b"walk\n"[at] & b"stop\n"[at]);
-        assert_eq!(received(&writes), whole(&both));
+        assert_eq!(received(&writes), without_errors(&both));
     }
 
     #[test]
@@ -183,7 +183,7 @@ mod tests {
             wire.write(talker, b"status\n", 500);
             assert_eq!(
                 wire.receive(500 + 70 * (16_000_000 / rate as u64), rate),
-                whole(b"status\n")
+                without_errors(b"status\n")
             );
             wire.write(talker, b"status\n", 1_000_000);
             let read = wire.receive(2_000_000, rates[1 - talker]);

@@ -17,7 +17,7 @@ fn is_front(servo: usize) -> bool {
 
 /// The error for a gait that has no goal, with the gait's name.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-pub enum NoGoal {
+pub enum GoalError {
     /// The gait's movement depends on a tie between two pairs of feet.
     #[error(
         "the direction of the gait `{0}` is undecided, since two feet pull against two; tune another gait"
@@ -48,11 +48,11 @@ impl Goal {
     ///
     /// # Errors
     /// Fails for a gait that stands, goes along a curve, or depends on ties.
-    pub fn of(gait: &CheckedGait, ground: &Ground) -> Result<Self, NoGoal> {
+    pub fn of(gait: &CheckedGait, ground: &Ground) -> Result<Self, GoalError> {
         let name = || gait.name().to_owned();
         let movement = gait.predict(&ground.rigid());
         let (Some(forward), Some(turn)) = (movement.forward, movement.turn) else {
-            return Err(NoGoal::Undecided(name()));
+            return Err(GoalError::Undecided(name()));
         };
         let is_enough = |value: f64, min: f64| value.abs() >= min;
         match (
@@ -61,8 +61,8 @@ impl Goal {
         ) {
             (true, false) => Ok(Self::Ahead(forward.signum())),
             (false, true) => Ok(Self::Turn(turn.signum())),
-            (false, false) => Err(NoGoal::Nowhere(name())),
-            (true, true) => Err(NoGoal::Arc(name())),
+            (false, false) => Err(GoalError::Nowhere(name())),
+            (true, true) => Err(GoalError::Arc(name())),
         }
     }
 

@@ -15,7 +15,7 @@ const SERVOS: ServoModel = ServoModel::SG90;
 /// A period so long that no servo exceeds its speed limit, for measuring their speed, s.
 const SLOW_PERIOD_S: f64 = 3.0;
 /// Number of iterations that fit the period to the servo speed.
-const FITS: usize = 3;
+const PERIOD_ITERATIONS: usize = 3;
 /// The share of the robots that may be slower than the score says.
 const SLOWEST_SHARE: f64 = 0.05;
 
@@ -42,7 +42,7 @@ impl BuiltGait {
         };
         let mut fits: Option<Self> = None;
         let mut built = build(SLOW_PERIOD_S)?;
-        for _ in 0..FITS {
+        for _ in 0..PERIOD_ITERATIONS {
             let period = round_period(built.gait().period() * built.peak() / rate);
             if period > MAX_PERIOD_S {
                 return None;
@@ -141,7 +141,7 @@ impl Judge {
 
     /// Follows a cycle on the robot itself in fine steps, with ideal servos.
     pub fn cycle(&self, gait: &CheckedGait) -> Travel {
-        gait.walked(&self.ground).travel
+        gait.simulate_cycle(&self.ground).travel
     }
 
     /// Follows a cycle on the robot itself frame by frame.

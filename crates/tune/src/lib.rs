@@ -32,5 +32,5 @@ pub use goal::Goal;
 pub use judge::BuiltGait;
 pub use plan::Kind;
 pub use search::{Search, trials};
-pub use tuning::{NoTuning, ScoredParameters, Tuning};
+pub use tuning::{ScoredParameters, Tuning, TuningError};
 pub use variation::{FRICTION, PLAY_SPREAD, SPREAD, Variation, quantiles};

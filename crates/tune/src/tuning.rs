@@ -4,7 +4,7 @@ use lizard_robot::{CheckedGait, Ground, Robot};
 use thiserror::Error;
 
 use crate::comparison::Comparison;
-use crate::goal::{Goal, NoGoal};
+use crate::goal::{Goal, GoalError};
 use crate::judge::{BuiltGait, Judge};
 use crate::plan::{Kind, Space, planned};
 use crate::search::Search;
@@ -12,16 +12,16 @@ use crate::search::Search;
 /// Number of random robots on which the search scores a gait.
 const JUDGES: usize = 16;
 /// First seed of the comparison's robots, which the search has not used.
-const FRESH: u64 = 1 << 40;
+const COMPARISON_SEED: u64 = 1 << 40;
 /// Smallest servo speed that is accepted, deg/s.
 const MIN_SERVO_SPEED: f64 = 10.0;
 
 /// The error for a gait that cannot be tuned.
 #[derive(Debug, Clone, PartialEq, Error)]
-pub enum NoTuning {
+pub enum TuningError {
     /// The gait has no goal.
     #[error(transparent)]
-    Goal(#[from] NoGoal),
+    Goal(#[from] GoalError),
     /// The requested servo speed is too low for walking, or higher than the robot's limits allow.
     #[error(
         "{rate}: from {smallest} to {most} deg/s, which is limits.gait_slew in robot.toml",
@@ -74,9 +74,9 @@ impl Tuning {
         rate: Option<f64>,
         name: &str,
         seed: u64,
-    ) -> Result<Self, NoTuning> {
+    ) -> Result<Self, TuningError> {
         let goal = Goal::of(gait, ground)?;
-        let rate = allowed(robot, gait, rate)?;
+        let rate = servo_speed(robot, gait, rate)?;
         let widest = BuiltGait::widest(robot, goal, rate);
         Ok(Self {
             robot: robot.clone(),
@@ -124,7 +124,7 @@ impl Tuning {
     /// Compares the gait that was found with the given one, on this number of random robots that
     /// the search has not used.
     pub fn compare(&self, found: &BuiltGait, robots: usize) -> Comparison {
-        let seed = self.seed.wrapping_add(FRESH);
+        let seed = self.seed.wrapping_add(COMPARISON_SEED);
         let judge = Judge::new(&self.robot, &self.ground, self.goal(), robots, seed);
         Comparison::of(&judge, self.rate, &self.gait, found)
     }
@@ -136,7 +136,7 @@ impl Tuning {
 }
 
 /// Returns the speed limit of the servos: the requested one or, without a request, the gait's own peak speed.
-fn allowed(robot: &Robot, gait: &CheckedGait, asked: Option<f64>) -> Result<f64, NoTuning> {
+fn servo_speed(robot: &Robot, gait: &CheckedGait, asked: Option<f64>) -> Result<f64, TuningError> {
     let Some(rate) = asked else {
         return Ok(gait.audit().peak.speed);
     };
@@ -144,5 +144,5 @@ fn allowed(robot: &Robot, gait: &CheckedGait, asked: Option<f64>) -> Result<f64,
     if (MIN_SERVO_SPEED..=max).contains(&rate) {
         return Ok(rate);
     }
-    Err(NoTuning::Rate { rate, most: max })
+    Err(TuningError::Rate { rate, most: max })
 }

@@ -95,7 +95,7 @@ impl Twin {
             lag: self.walker.lag(),
             feet: ground
                 .feet
-                .at(self.walker.legs())
+                .positions(self.walker.legs())
                 .map(|foot| place.on_floor(foot)),
             slip: slip.feet,
             loads: slip.loads.map(|share| share * load),

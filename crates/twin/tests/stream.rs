@@ -46,7 +46,7 @@ fn ideal_servos_go_where_the_gait_is_predicted_to_go() {
     for ground in [*robot.ground(), springs] {
         for gait in robot.gaits().iter().filter(|gait| gait.name() != "look") {
             let tally = cycle(&robot, gait.name(), ServoModel::Ideal, &ground);
-            let (travel, wanted) = (tally.travel(), gait.walked(&ground).travel);
+            let (travel, wanted) = (tally.travel(), gait.simulate_cycle(&ground).travel);
             let name = gait.name();
             assert!(
                 (travel.forward - wanted.forward).abs() < 0.35,

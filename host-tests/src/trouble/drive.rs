@@ -86,9 +86,9 @@ impl<'a> Drive<'a> {
         }
         self.talk(now, record);
         if self.radio.is_in_reach() {
-            match record.reached.last_mut() {
+            match record.radio_spans.last_mut() {
                 Some(span) if span.end + 2 * MS > now => span.end = now,
-                _ => record.reached.push(Span {
+                _ => record.radio_spans.push(Span {
                     start: now,
                     end: now,
                 }),

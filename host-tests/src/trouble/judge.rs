@@ -278,7 +278,7 @@ fn check_orders_were_sent(record: &Record) -> Result<(), String> {
         let is_new = starts.any(|start| recent.contains(&start.cycle));
         let breaks = |at: u64| {
             record
-                .reached
+                .radio_spans
                 .iter()
                 .any(|link| (at..at + 200 * MS).contains(&link.end))
         };
@@ -296,29 +296,29 @@ fn check_orders_were_sent(record: &Record) -> Result<(), String> {
 
 /// Checks that each `stop` of the person at the phone is answered, once the radio link has held for a while.
 fn check_stop_is_answered(record: &Record) -> Result<(), String> {
-    const HOLDS: u64 = 2_000 * MS;
+    const ANSWER_TIME: u64 = 2_000 * MS;
     // Longer before the robot has found the line's baud rate, for which it needs up to five lines.
-    const FINDS: u64 = 3_500 * MS;
+    const RATE_SEARCH_TIME: u64 = 3_500 * MS;
     // During this time before a `stop`, the answer to an earlier one may come.
-    const UNDER_WAY: u64 = 300 * MS;
+    const EARLIER_ANSWER_TIME: u64 = 300 * MS;
     for stop in &record.stops {
         let ends = |line: &&Line| {
             let is_end = line.text.ends_with("ok stop") || line.text.starts_with("err 7");
-            line.cycle + UNDER_WAY > *stop && is_end
+            line.cycle + EARLIER_ANSWER_TIME > *stop && is_end
         };
         let answered = record.lines.iter().find(ends).map(|line| line.cycle);
         let within = |link: &Span| {
             let from = link.start.max(*stop);
             let due = from
                 + if record.has_found_rate(from) {
-                    HOLDS
+                    ANSWER_TIME
                 } else {
-                    FINDS
+                    RATE_SEARCH_TIME
                 };
             let is_calm = !record.is_troubled(from.saturating_sub(300 * MS), due);
             (link.end >= due && is_calm).then_some(due)
         };
-        let due = record.reached.iter().find_map(within);
+        let due = record.radio_spans.iter().find_map(within);
         if due.is_some_and(|due| answered.is_none_or(|at| at > due)) {
             return Err(format!("stop, sent first at {} ms", stop / MS));
         }

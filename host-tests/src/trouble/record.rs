@@ -74,7 +74,7 @@ impl Received {
     /// True if the line tells the robot to move, to stop or to rest.
     fn is_order(&self) -> bool {
         let ordered = matches!(self.effect, Effect::Moves | Effect::Freezes | Effect::Rests);
-        ordered && self.text != super::scenario::NOWHERE
+        ordered && self.text != super::scenario::REFUSED_POSE
     }
 }
 
@@ -96,7 +96,7 @@ pub struct Record {
     /// The cycles at which the person at the phone stopped the robot.
     pub stops: Vec<u64>,
     /// The spans in which the lines of the person at the phone could reach the board.
-    pub reached: Vec<Span>,
+    pub radio_spans: Vec<Span>,
     /// The cycles at which bytes arrived.
     pub bytes: Vec<u64>,
     /// Every start of the program.
@@ -205,7 +205,7 @@ impl Record {
     /// it forget the line's baud rate.
     #[must_use]
     pub fn has_found_rate(&self, at: u64) -> bool {
-        let radio = self.reached.first().map_or(at, |link| link.start);
+        let radio = self.radio_spans.first().map_or(at, |link| link.start);
         let forgets = |start: &&Reset| {
             let is_reset = matches!(start.cause, ResetCause::PowerOn | ResetCause::External);
             is_reset && start.cycle < at

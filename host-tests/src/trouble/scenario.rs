@@ -19,7 +19,7 @@ use super::step::Step;
 const MS: u64 = CYCLES_PER_MS;
 
 /// A pose beyond every servo's travel, which is always refused.
-pub(super) const NOWHERE: &str = "pose 0 0 0 0";
+pub(super) const REFUSED_POSE: &str = "pose 0 0 0 0";
 
 /// A random scenario.
 #[derive(Debug, Clone, PartialEq)]
@@ -233,7 +233,14 @@ impl<'a> Script<'a> {
             _ => {}
         }
         for _ in 0..self.rng.u8(1..5) {
-            let lines = ["status", "help", "cal", "speed 50", "nonsense", NOWHERE];
+            let lines = [
+                "status",
+                "help",
+                "cal",
+                "speed 50",
+                "nonsense",
+                REFUSED_POSE,
+            ];
             let line = *self.rng.choice(&lines).unwrap_or(&"status");
             self.send(line);
         }
@@ -281,7 +288,7 @@ impl<'a> Script<'a> {
         let air = Air {
             baud: f64::from(rate.baud()),
             loss: *self.rng.choice(&[0.0, 0.01, 0.1]).unwrap_or(&0.0),
-            holds: *self.rng.choice(&[0, 1_000, 4_000]).unwrap_or(&0),
+            mean_link_ms: *self.rng.choice(&[0, 1_000, 4_000]).unwrap_or(&0),
             reports_link: self.rng.bool(),
             seed: self.rng.u64(..),
         };
@@ -345,7 +352,13 @@ impl<'a> Script<'a> {
         self.wait(150);
         self.steps.push(Step::Find);
         self.say("status");
-        let refused = [NOWHERE, "trim 1 90", "speed 5", "nonsense", "limit 2 1 2"];
+        let refused = [
+            REFUSED_POSE,
+            "trim 1 90",
+            "speed 5",
+            "nonsense",
+            "limit 2 1 2",
+        ];
         let refused = *self.rng.choice(&refused).unwrap_or(&"nonsense");
         self.say(refused);
         self.say("status");

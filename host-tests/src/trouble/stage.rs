@@ -98,7 +98,7 @@ impl Stage<'_> {
                 });
             }
             Step::Hold(cycles) => {
-                self.uno.hold(*cycles);
+                self.uno.block_interrupts(*cycles);
                 // The interrupt waits until interrupts are enabled.
                 let end = now + cycles + CYCLES_PER_MS;
                 self.record.holds.push(Span { start: now, end });
@@ -121,7 +121,7 @@ impl Stage<'_> {
                 }
             }
             Step::Contact(pin, is_closed) => self.uno.set_contact(Pin::arduino(*pin), *is_closed),
-            Step::Find => self.find(),
+            Step::Find => self.ask_until_answered(),
             Step::Noise(cycles) => self.add_noise(*cycles),
             Step::Weak(on) => {
                 self.is_weak = *on;
@@ -143,7 +143,7 @@ impl Stage<'_> {
     }
 
     /// Sends `status` until there is an answer.
-    fn find(&mut self) {
+    fn ask_until_answered(&mut self) {
         for _ in 0..MAX_QUESTIONS {
             let from = self.record.lines.len();
             self.send("status");
@@ -314,7 +314,7 @@ fn received(bytes: &[u8], cycle: u64, robot: &Robot) -> Received {
     let is_known = parse(text.as_bytes(), robot.firmware()).is_ok();
     Received {
         cycle,
-        effect: effect_of_an_end(&text, robot),
+        effect: effect_of_tail(&text, robot),
         is_command: is_whole && is_known,
         text,
     }
@@ -322,7 +322,7 @@ fn received(bytes: &[u8], cycle: u64, robot: &Robot) -> Received {
 
 /// Returns the effect of a line or, if it is no command, of its longest tail that has one: a reset may have cut off
 /// its beginning.
-fn effect_of_an_end(line: &str, robot: &Robot) -> Effect {
+fn effect_of_tail(line: &str, robot: &Robot) -> Effect {
     let robot = robot.firmware();
     if parse(line.as_bytes(), robot).is_ok() {
         return effect(line, robot);

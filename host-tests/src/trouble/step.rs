@@ -59,7 +59,7 @@ impl fmt::Display for Step {
                 "a person drives by radio at {} baud: {:.0} % of the packets are lost, the link holds for {} ms{}",
                 air.baud,
                 100.0 * air.loss,
-                air.holds,
+                air.mean_link_ms,
                 if air.reports_link {
                     ", and says so"
                 } else {

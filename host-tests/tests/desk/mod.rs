@@ -11,7 +11,7 @@ use simulated_uno::{Edge, Fidelity, Image, Port, Uno};
 use crate::shell::Shell;
 
 /// Address of the boot loader's first byte; the firmware ends before it.
-pub const BOOT: usize = 0x7e00;
+pub const BOOT_LOADER_START: usize = 0x7e00;
 
 pub fn boot_loader() -> Image {
     loader("optiboot.elf")
@@ -49,7 +49,7 @@ impl Desk {
     }
 
     /// Runs the board until the condition holds. Returns false if it does not hold in time.
-    pub fn until(&mut self, mut done: impl FnMut(&mut Uno) -> bool) -> bool {
+    pub fn run_until(&mut self, mut done: impl FnMut(&mut Uno) -> bool) -> bool {
         LIMIT.wait_for(|| {
             let step = Duration::from_millis(10);
             self.port
@@ -61,8 +61,8 @@ impl Desk {
     }
 
     /// Waits until `text` is on the screen. Fails if it does not appear in time.
-    pub fn see(&mut self, shell: &Shell, text: &str) {
-        let seen = self.until(|_| shell.screen().contains(text) || shell.has_ended());
+    pub fn wait_for_text(&mut self, shell: &Shell, text: &str) {
+        let seen = self.run_until(|_| shell.screen().contains(text) || shell.has_ended());
         let screen = if shell.has_ended() {
             shell.last_screen()
         } else {
@@ -75,8 +75,8 @@ impl Desk {
     }
 
     /// Runs the board until the program in the shell has ended. Returns the screen.
-    pub fn end(&mut self, shell: &Shell) -> String {
-        let ended = self.until(|_| shell.has_ended());
+    pub fn run_until_exit(&mut self, shell: &Shell) -> String {
+        let ended = self.run_until(|_| shell.has_ended());
         let screen = if ended {
             shell.last_screen()
         } else {
@@ -89,7 +89,9 @@ impl Desk {
     /// Returns the addresses below the boot loader at which the flash differs from a program.
     pub fn differences(&self, program: &[u8]) -> Vec<usize> {
         let flash = self.uno.flash();
-        (0..BOOT).filter(|&at| flash[at] != program[at]).collect()
+        (0..BOOT_LOADER_START)
+            .filter(|&at| flash[at] != program[at])
+            .collect()
     }
 
     /// Checks that the flash holds a program and an unchanged boot loader.
@@ -97,7 +99,7 @@ impl Desk {
         let wrong = self.differences(program);
         assert!(wrong.is_empty(), "the flash differs at {wrong:x?}");
         let new = Uno::with_boot_loader(boot_loader(), Fidelity::DataSheet);
-        let is_whole = self.uno.flash()[BOOT..] == new.flash()[BOOT..];
+        let is_whole = self.uno.flash()[BOOT_LOADER_START..] == new.flash()[BOOT_LOADER_START..];
         assert!(is_whole, "the boot loader has changed");
     }
 }

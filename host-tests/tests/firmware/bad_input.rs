@@ -23,7 +23,7 @@ fn send_and_check(mut bytes: impl FnMut(&mut Rng) -> Vec<u8>) -> FirmwareBench {
     let mut bench = awake(Fidelity::DataSheet);
     let mut rng = lizard_host_tests::rng(77);
     bench.uno.take_edges();
-    for second in 0..lizard_host_tests::times(SECONDS) {
+    for second in 0..lizard_host_tests::scaled(SECONDS) {
         let mut sent = Vec::new();
         while sent.len() < PER_SECOND {
             sent.extend(bytes(&mut rng));

@@ -12,7 +12,7 @@ use crate::{
 
 /// Largest rounding error of a printed angle, deg: half a step of two decimals, of a pulse and of the neutral
 /// angle.
-const PRINTED: f64 = 0.005 + 0.0032 + 0.0028;
+const MAX_PRINT_ERROR: f64 = 0.005 + 0.0032 + 0.0028;
 
 #[test]
 fn half_a_second_after_power_on_there_is_a_banner_and_after_one_an_answer() {
@@ -103,7 +103,7 @@ fn refused_poses() -> Vec<(String, u8)> {
             let Ok(solution) = robot().lizard().solve(&angles.into()) else {
                 continue;
             };
-            match code(&solution) {
+            match certain_refusal_code(&solution) {
                 Some(4) => 1,
                 Some(5) => 2,
                 _ => continue,
@@ -128,7 +128,7 @@ fn refused_poses() -> Vec<(String, u8)> {
 /// Returns the error code of a pose within the travel; `None` if the pose is allowed or the code is not certain.
 /// The guard first checks the margins of both ends, where crossed crank tips are a type-2 margin below 0. It checks
 /// the strokes last.
-fn code(solution: &Solution) -> Option<u8> {
+fn certain_refusal_code(solution: &Solution) -> Option<u8> {
     let broken = |by: f64, stroke: bool| {
         let mut all = limits(by).violations(solution);
         all.any(|violation| Check::STROKE.contains(&violation.what) == stroke)
@@ -270,7 +270,7 @@ fn status_agrees_with_the_pulses() {
             .expect("four pulses");
         for (servo, (printed, sent)) in status.pose().into_iter().zip(sent).enumerate() {
             assert!(
-                (printed - sent).abs() <= PRINTED,
+                (printed - sent).abs() <= MAX_PRINT_ERROR,
                 "{servo}: {printed} and {sent}"
             );
         }
@@ -343,7 +343,7 @@ fn watch_reports_the_pose_of_every_nth_frame_until_it_is_switched_off() {
             let printed = angles(pose);
             let is_sent = sent.iter().any(|at| {
                 let sent = at.angles.expect("four pulses");
-                (0..4).all(|i| (printed[i] - sent[i]).abs() <= PRINTED)
+                (0..4).all(|i| (printed[i] - sent[i]).abs() <= MAX_PRINT_ERROR)
             });
             assert!(is_sent, "{line} was never sent");
         }

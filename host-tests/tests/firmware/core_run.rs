@@ -18,7 +18,7 @@ fn end() -> u64 {
 }
 
 /// Returns a random line: any command, valid or not.
-fn line(rng: &mut Rng) -> String {
+fn random_line(rng: &mut Rng) -> String {
     let near = |rng: &mut Rng, within: f64| {
         let angles: Vec<String> = robot()
             .servos()
@@ -55,13 +55,13 @@ fn line(rng: &mut Rng) -> String {
 
 /// Sends lines until a second before the end. Each line ends at a random time within a frame, at least a
 /// millisecond from the ticks, so that its frame is certain. Each line waits for the answer to the previous one.
-fn talk(bench: &mut FirmwareBench, first: u64, rng: &mut Rng) -> u32 {
+fn send_random_lines(bench: &mut FirmwareBench, first: u64, rng: &mut Rng) -> u32 {
     let mut count = 0;
     let mut written = 0;
     // A frame's tick comes one slot before A1's pulse.
     let tick = first - FRAME / 5;
     while bench.uno.cycle() < end() - FREQUENCY {
-        let line = line(rng);
+        let line = random_line(rng);
         let sending = (line.len() as u64 + 1) * BYTE;
         let wait = rng.u64(..40) * rng.u64(..40) * CYCLES_PER_MS;
         let earliest = bench.uno.cycle() + written + wait + sending;
@@ -97,7 +97,7 @@ fn random_commands_give_the_same_widths_on_the_avr_and_here() {
             .find(up)
             .expect("the robot stands")
             .cycle;
-        let sent_lines = talk(&mut bench, first, &mut Rng::with_seed(seed));
+        let sent_lines = send_random_lines(&mut bench, first, &mut Rng::with_seed(seed));
         let status = Status::of(&mut bench);
         assert_eq!(
             (status.number("late"), status.number("rx_lost")),

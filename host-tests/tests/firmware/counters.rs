@@ -14,7 +14,7 @@ fn each_overrun_of_the_receiver_is_counted() {
         // Two bytes wait in the buffer, a third is in the shift register, and more arrive.
         bench.uno.send(&[b' '; 12]);
         bench.uno.run_cycles(2_000);
-        bench.uno.hold(8_000);
+        bench.uno.block_interrupts(8_000);
         bench.run_ms(20);
         assert!(bench.uno.overruns() > overruns);
         overruns = bench.uno.overruns();
@@ -65,7 +65,7 @@ fn a_count_that_carries_while_main_reads_it_is_read_as_before_or_after() {
             let now = walk.bench.uno.cycle();
             walk.bench.uno.stall_main(rise + 1_000 - now);
             walk.run_to(rise - 600);
-            walk.bench.uno.hold(700);
+            walk.bench.uno.block_interrupts(700);
             walk.run_to(rise + 550_000);
             assert_eq!(walk.word("pulses::LATE"), 256);
             let lines = &walk.bench.lines()[lines_before..];
@@ -113,7 +113,7 @@ fn a_counter_that_is_full_stays_full() {
     walk.bench.uno.poke(late + 1, 0xff);
     let rise = walk.next_frame();
     walk.run_to(rise - 600);
-    walk.bench.uno.hold(700);
+    walk.bench.uno.block_interrupts(700);
     walk.bench.run_ms(20);
     assert_eq!(walk.late(), 65_535);
     assert_eq!(Status::of(&mut walk.bench).number("late"), 65_535.0);

@@ -76,7 +76,7 @@ fn a_late_edge_stops_the_motion_and_its_pulse_is_dropped() {
     let mut walk = Walk::begin(Fidelity::DataSheet);
     let rise = walk.next_frame();
     walk.run_to(rise - 600);
-    walk.bench.uno.hold(700);
+    walk.bench.uno.block_interrupts(700);
     walk.run_to(rise + 2 * FRAME);
     let edges = pulses(&walk.bench);
     assert!(

@@ -39,7 +39,7 @@ fn phase(gait: &CheckedGait, frames: usize) -> f64 {
 }
 
 /// Returns the angles of a gait frame by frame from its start, in floating point, deg.
-fn floating(gait: &CheckedGait, frames: usize) -> Vec<[f64; 4]> {
+fn expected_angles(gait: &CheckedGait, frames: usize) -> Vec<[f64; 4]> {
     (0..frames).map(|n| gait.angles(phase(gait, n))).collect()
 }
 
@@ -67,7 +67,7 @@ fn the_pulses_of_every_gait_follow_it_frame_by_frame() {
     for_each(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
         for gait in robot().gaits() {
             let frames = decode_angles(gait, *fidelity);
-            let float = floating(gait, frames.len());
+            let float = expected_angles(gait, frames.len());
             let start = first_frame(gait, &float, &frames);
             let error = worst(&float, &frames, start);
             println!(
@@ -103,7 +103,7 @@ fn the_pulses_of_every_gait_lead_where_the_contact_model_says() {
         };
         compared.fetch_add(usize::from(gait.moves()), Ordering::Relaxed);
         let frames = decode_angles(gait, Fidelity::DataSheet);
-        let float = floating(gait, frames.len());
+        let float = expected_angles(gait, frames.len());
         let start = first_frame(gait, &float, &frames);
         // Whole cycles, from the first frame at full pace that begins a cycle: two if a cycle is no whole number of
         // frames.
@@ -125,17 +125,17 @@ fn the_pulses_of_every_gait_lead_where_the_contact_model_says() {
                 }
             })
             .expect("a cycle begins");
-        let way = robot().travel(frames[from..=from + length].iter().copied());
+        let moved = robot().travel(frames[from..=from + length].iter().copied());
         let (ahead, turned) = (
-            way.forward / f64::from(cycles),
-            way.turn / f64::from(cycles),
+            moved.forward / f64::from(cycles),
+            moved.turn / f64::from(cycles),
         );
         println!("{name:<10} {ahead:7.2} mm {turned:7.2} deg");
         // The holding feet may depend on a tenth of a degree.
         let size = robot().lizard().links.l10 / 135.0;
         let max = (0.3 * size).max(forward.abs() * 0.02);
-        assert!((ahead - forward).abs() <= max, "{name}: {way:?}");
-        assert!((turned - turn).abs() <= 0.2, "{name}: {way:?}");
+        assert!((ahead - forward).abs() <= max, "{name}: {moved:?}");
+        assert!((turned - turn).abs() <= 0.2, "{name}: {moved:?}");
     });
     let compared = compared.into_inner();
     assert!(compared > 0, "every gait that moves depends on a tie");

@@ -127,7 +127,7 @@ fn parse_refusal(answer: &str) -> (&str, Option<f64>) {
 
 /// Returns the value of the named condition in floating point, and the guard's largest error in it. The name begins
 /// with the error code.
-fn value(solution: &Solution, name: &str) -> Option<(f64, f64)> {
+fn float_value_and_tolerance(solution: &Solution, name: &str) -> Option<(f64, f64)> {
     let margins = &solution.margins;
     // The margin is negative if the crank tips have crossed.
     let type2 = |end: usize| {
@@ -194,7 +194,8 @@ fn a_refusal_names_the_margin_and_its_value_or_says_that_it_knows_none() {
                 continue;
             }
         };
-        let (float, max) = value(&solution, name).unwrap_or_else(|| panic!("{answer}"));
+        let (float, max) =
+            float_value_and_tolerance(&solution, name).unwrap_or_else(|| panic!("{answer}"));
         match printed {
             Some(printed) => {
                 let error = (printed - float).abs();
@@ -298,7 +299,7 @@ fn poses_with_unsafe_path_between() -> Option<[[f64; 4]; 2]> {
 }
 
 /// Checks that a robot without such a path reaches every safe pose and is never held.
-fn every_safe_pose_is_reached() {
+fn assert_every_safe_pose_is_reached() {
     let mut rng = Rng::with_seed(4);
     let mut bench = awake(Fidelity::DataSheet);
     for _ in 0..20 {
@@ -319,7 +320,7 @@ fn every_safe_pose_is_reached() {
 #[test]
 fn a_path_that_breaks_a_limit_ends_before_that() {
     let Some([from, to]) = poses_with_unsafe_path_between() else {
-        every_safe_pose_is_reached();
+        assert_every_safe_pose_is_reached();
         return;
     };
     for_each(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {

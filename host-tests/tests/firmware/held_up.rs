@@ -9,7 +9,7 @@ use crate::walk::{SLOT, Walk};
 use crate::{in_both, neutral_widths};
 
 /// Longest time that other handlers and code with interrupts disabled may take, cycles.
-const MAY_TAKE: u64 = 160;
+const MAX_BLOCKED: u64 = 160;
 
 /// A time of `length` cycles with interrupts blocked, which begins `before` cycles before an edge.
 #[derive(Clone, Copy, Debug)]
@@ -38,7 +38,7 @@ fn sweep(walk: &mut Walk, edges: Edges, holds: &[Hold]) -> Vec<(Frame, [u64; 4])
             for (edge, cycle) in both {
                 if edges == Edges::Both || edges == edge {
                     walk.run_to(cycle - hold.before);
-                    walk.bench.uno.hold(hold.length);
+                    walk.bench.uno.block_interrupts(hold.length);
                 }
             }
         }
@@ -63,7 +63,7 @@ fn holds_beyond_limit() -> Vec<Hold> {
 fn a_stretch_that_the_rules_allow_moves_no_edge_wherever_it_begins() {
     in_both(|fidelity| {
         let mut walk = Walk::begin(fidelity);
-        let length = MAY_TAKE;
+        let length = MAX_BLOCKED;
         let holds: Vec<Hold> = (0..450).map(|before| Hold { before, length }).collect();
         for (n, (frame, asked)) in sweep(&mut walk, Edges::Both, &holds).iter().enumerate() {
             assert_eq!(frame.all(), Some(*asked), "{:?}: {frame:?}", holds[n]);
@@ -135,7 +135,7 @@ fn interrupts_off_for_most_of_a_slot_cost_its_pulse_and_nothing_else() {
             let start = walk.next_frame();
             let late = walk.late();
             walk.run_to(start + servo * SLOT - 600);
-            walk.bench.uno.hold(length);
+            walk.bench.uno.block_interrupts(length);
             walk.run_to(start + 3 * FRAME - SLOT / 2);
             for (n, (frame, asked)) in walk.frames_since(start).into_iter().enumerate() {
                 let mut expected = asked.map(Some);
@@ -176,7 +176,7 @@ fn a_falling_edge_that_is_missed_is_made_when_the_next_slot_begins() {
                 let late = walk.late();
                 let until = began + SLOT - 220 + beyond;
                 let length = until - walk.bench.uno.cycle();
-                walk.bench.uno.hold(length);
+                walk.bench.uno.block_interrupts(length);
                 walk.bench.run_ms(40);
                 let what = format!("A{} and {beyond}", servo + 1);
                 assert_eq!(walk.late(), late + 1, "{what}");
@@ -215,7 +215,7 @@ fn milliseconds_without_interrupts_shorten_no_pulse_nor_exceed_its_slot() {
             walk.bench.run_for_frames(0);
             walk.bench.uno.run_cycles(rng.u64(..FRAME));
             let length = rng.u64(1_000..5 * CYCLES_PER_MS);
-            walk.bench.uno.hold(length);
+            walk.bench.uno.block_interrupts(length);
             walk.bench.run_ms(30);
             let pins = walk.bench.pins();
             let edges = servo_edges(&walk.bench);

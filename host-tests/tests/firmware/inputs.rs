@@ -17,7 +17,7 @@ const BUTTON: Pin = Pin::a(1);
 const NOSE: Pin = Pin::a(2);
 
 /// The longest time for which a contact must be closed to count, ms.
-const DEBOUNCED: u64 = 60;
+const DEBOUNCE_MS: u64 = 60;
 
 /// The largest mean duration of a frame's computation, cycles.
 const TICK: u64 = 5_000;
@@ -156,13 +156,13 @@ fn a_button_that_is_stuck_or_only_touched_starts_nothing() {
         bench.run_ms(5_000);
         assert!(is_still(&mut bench));
         bench.uno.set_contact(BUTTON, false);
-        bench.run_ms(DEBOUNCED);
+        bench.run_ms(DEBOUNCE_MS);
         for ms in 1..39 {
             press(&mut bench, BUTTON, ms);
             bench.run_ms(41);
         }
         assert!(is_still(&mut bench));
-        press(&mut bench, BUTTON, DEBOUNCED);
+        press(&mut bench, BUTTON, DEBOUNCE_MS);
         assert!(!is_still(&mut bench));
     });
 }

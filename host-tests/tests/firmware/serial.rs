@@ -124,7 +124,7 @@ fn of_an_overrun_the_bytes_that_are_kept_come_once_and_in_their_order() {
         bench.run_ms(2);
         bench.uno.send(b"01234");
         bench.uno.run_cycles(byte / 2 + n * 37);
-        bench.uno.hold(5 * byte);
+        bench.uno.block_interrupts(5 * byte);
         bench.run_ms(3);
         let answer = bench.say("");
         let digits = answer.strip_prefix("ok watch ").expect(&answer);

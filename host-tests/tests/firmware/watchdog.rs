@@ -134,7 +134,7 @@ fn disabled_interrupts_are_detected_and_the_chip_tells_the_cause() {
     // SREG's I bit.
     let sreg = 0x5f;
     assert!(bench.uno.run_until(MS, 1, |uno| uno.peek(sreg) & 0x80 == 0));
-    bench.uno.hold(1_000 * MS);
+    bench.uno.block_interrupts(1_000 * MS);
     run_until_reset(&mut bench);
     bench.uno.run_ms(100);
     assert_eq!(Status::of(&mut bench).text("reset"), "watchdog");
@@ -246,14 +246,14 @@ fn a_hang_that_ends_by_itself_is_reset_like_any_other() {
         let resets = bench.uno.resets();
         bench.uno.stall_main(ms * MS);
         bench.uno.run_ms(ms + 150);
-        let began_anew = bench.uno.resets() > resets;
+        let was_reset = bench.uno.resets() > resets;
         let frames = pulses_in(&mut bench, 200);
         for (servo, pulses) in frames.iter().enumerate() {
             let all = pulses.len() >= 9 && pulses.iter().all(|pulse| pulse.width == widths[servo]);
             assert!(all, "A{} after {ms} ms: {pulses:?}", servo + 1);
         }
-        assert!(began_anew || ms < 130, "{ms} ms");
-        let fault = if began_anew { "watchdog" } else { "none" };
+        assert!(was_reset || ms < 130, "{ms} ms");
+        let fault = if was_reset { "watchdog" } else { "none" };
         assert_eq!(Status::of(&mut bench).text("fault"), fault, "{ms} ms");
         // The next iteration begins without a fault, in the same pose.
         bench.say(&pose_at([5.0, -4.0, 3.0, -2.0]));

@@ -35,15 +35,15 @@ const ROUNDING: f64 = 4.0;
 /// changes of speed of its own, and gaining or losing pace adds to them.
 ///
 /// The value is computed once for each robot and cached by the hash of the robot's numbers.
-pub fn jerk(robot: &Robot) -> f64 {
+pub fn max_speed_change(robot: &Robot) -> f64 {
     static KNOWN: Mutex<BTreeMap<u32, f64>> = Mutex::new(BTreeMap::new());
     let mut known = KNOWN.lock().expect("no test fails in here");
     *known
         .entry(robot.firmware().hash())
-        .or_insert_with(|| most_jerk(robot))
+        .or_insert_with(|| compute_max_speed_change(robot))
 }
 
-fn most_jerk(robot: &Robot) -> f64 {
+fn compute_max_speed_change(robot: &Robot) -> f64 {
     let moves = robot.pace().slew / 2.0;
     let gaits = GaitId::all(robot.gaits().len()).map(|id| {
         let (speed, change) = fastest(robot, id);
@@ -108,7 +108,7 @@ impl<'a> Walker<'a> {
             running: Running::power_on(*robot.firmware()),
             speeds: [0.0; 4],
             may_stop: false,
-            most_jerk: jerk(robot),
+            most_jerk: max_speed_change(robot),
             jerk: 0.0,
         };
         walker.read();
@@ -196,7 +196,7 @@ impl<'a> Walker<'a> {
             robot.pace().slew
         };
         // The poses of a gait are rounded, which may add a step.
-        let fastest = f64::from(before.farthest(&pose)) * STEP_PER_FRAME;
+        let fastest = f64::from(before.largest_turn_to(&pose)) * STEP_PER_FRAME;
         let max = limit + if in_gait { STEP_PER_FRAME } else { 0.0 };
         assert!(
             fastest <= max + 1e-6,

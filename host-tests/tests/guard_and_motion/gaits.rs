@@ -266,7 +266,7 @@ fn a_mirrored_gait_is_the_other_one_with_left_and_right_exchanged() {
             for phase in phases() {
                 let pose = mirror(one.pose(robot.firmware().waves(), phase));
                 // Halves are rounded up for either sign, and gains are rounded.
-                let deviation = pose.farthest(&other.pose(robot.firmware().waves(), phase));
+                let deviation = pose.largest_turn_to(&other.pose(robot.firmware().waves(), phase));
                 assert!(deviation <= 1, "{name}: {deviation} steps");
             }
         }
@@ -279,7 +279,7 @@ fn the_wrap_of_the_phase_is_as_smooth_as_the_rest_of_the_cycle() {
     for (Named { name, robot }, float, gait) in gaits() {
         let pose = |phase: u32| gait.pose(robot.firmware().waves(), phase % CYCLE);
         // The longest distance between two neighbours, including that from the last phase to 0.
-        let step_size = |phase: u32| pose(phase).farthest(&pose(phase + (1 << 8)));
+        let step_size = |phase: u32| pose(phase).largest_turn_to(&pose(phase + (1 << 8)));
         let longest = phases().step_by(7).map(step_size).max();
         let around = phases().skip(PHASES as usize - 4).map(step_size).max();
         assert!(

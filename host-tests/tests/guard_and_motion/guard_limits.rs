@@ -20,14 +20,14 @@ fn limits(robot: &Robot) -> [f64; 10] {
 }
 
 /// The smallest Q15 number that is not below a sine.
-fn least(limit: f64) -> i16 {
+fn ceil_q15(limit: f64) -> i16 {
     (limit * 32768.0 - 1e-6).ceil() as i16
 }
 
 /// A clearance exactly at the limit of every margin, with both sliders at their maximum length.
 fn at_the_limit(robot: &Robot) -> Clearance {
     Clearance {
-        margins: limits(robot).map(|limit| Sine(least(limit))),
+        margins: limits(robot).map(|limit| Sine(ceil_q15(limit))),
         sliders_sq: Side::ALL.map(|side| {
             let max = u32::from(robot.firmware().side(side).max);
             max * max

@@ -5,7 +5,9 @@ use lizard_core::motion::Activity;
 use lizard_core::numbers::pose::Pose;
 use lizard_host_tests::{Named, rng, robots};
 
-use crate::frames::{WAKING, Walker, any_command, final_activity, jerk, settling_frames};
+use crate::frames::{
+    WAKING, Walker, any_command, final_activity, max_speed_change, settling_frames,
+};
 use crate::truth::safe_pose;
 
 /// Number of random dialogues with each robot.
@@ -32,7 +34,7 @@ fn no_frame_is_too_fast_too_sudden_or_unsafe_for_any_commands() {
         println!(
             "{}: {done} commands done, {refused} refused; speed changes by at most {largest:.0} of {:.0} deg/s",
             named.name,
-            jerk(&named.robot)
+            max_speed_change(&named.robot)
         );
         assert!(done > 100 && refused > 0, "{}", named.name);
     }
@@ -128,11 +130,11 @@ fn in_a_move_all_servos_do_the_same_share_of_their_ways_and_arrive_together() {
                 continue;
             }
             let end = poses[poses.len() - 1];
-            assert!(end.farthest(&goal) <= 1, "{}", named.name);
+            assert!(end.largest_turn_to(&goal) <= 1, "{}", named.name);
             arrived += 1;
-            let longest = f64::from(Pose::NEUTRAL.farthest(&end));
+            let longest = f64::from(Pose::NEUTRAL.largest_turn_to(&end));
             for pose in &poses {
-                let share = 1.0 - f64::from(pose.farthest(&end)) / longest;
+                let share = 1.0 - f64::from(pose.largest_turn_to(&end)) / longest;
                 for (here, there) in pose.0.iter().zip(&end.0) {
                     let error = f64::from(here.0) - share * f64::from(there.0);
                     assert!(error.abs() <= 4.0, "{}: {pose:?} to {end:?}", named.name);

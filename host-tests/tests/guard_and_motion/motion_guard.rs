@@ -80,7 +80,7 @@ fn the_last_safe_pose_is_held_and_the_reason_is_reported_once() {
             walker.run(settling_frames(robot)); // checks that every frame is safe
             // A step of a fast move may leap over a narrow hazard.
             let Some(hazard) = walker.motion().hazard() else {
-                assert!(walker.pose().farthest(&to) <= 1, "{name}");
+                assert!(walker.pose().largest_turn_to(&to) <= 1, "{name}");
                 continue;
             };
             held += 1;
@@ -135,7 +135,7 @@ fn lies_ahead(
             let (from, to) = (f64::from(from.0[n].0), f64::from(to.0[n].0));
             Sweep((from + share * (to - from)).round() as i16)
         }));
-        let beyond = held.farthest(&from) <= pose.farthest(&from) + 1;
+        let beyond = held.largest_turn_to(&from) <= pose.largest_turn_to(&from) + 1;
         beyond
             && Clearance::of(firmware, &pose)
                 .hazard(firmware)

@@ -67,7 +67,7 @@ pub struct Truth {
     /// Slider travel from nominal, mm.
     pub travels: [f64; 2],
     /// K2 of head and tail, mm.
-    pub across: [f64; 2],
+    pub k2: [f64; 2],
     /// True for each condition that is broken according to lizard-kinematics. Crossed crank tips
     /// count as type-2.
     pub broken: [bool; 12],
@@ -117,7 +117,7 @@ impl Truth {
             broken,
             margins,
             travels: [solution.left.s, solution.right.s],
-            across,
+            k2: across,
             limits: *robot.limits(),
             bands: [
                 head[0],
@@ -151,7 +151,7 @@ impl Truth {
         std::array::from_fn(|index| match index {
             0..2 => {
                 let margin = (self.margins[index].abs() - type2) / self.bands[index];
-                margin.min(self.across[index] / self.bands[12 + index])
+                margin.min(self.k2[index] / self.bands[12 + index])
             }
             2..6 => (self.margins[index] - type1) / self.bands[index],
             6..10 => (self.margins[index] - leg) / self.bands[index],
@@ -164,7 +164,7 @@ impl Truth {
 
     /// True if K2 of an end, by its index, is too near to 0 for a sign.
     pub fn is_at_crossing(&self, end: usize) -> bool {
-        self.across[end].abs() <= self.bands[12 + end]
+        self.k2[end].abs() <= self.bands[12 + end]
     }
 }
 

@@ -12,8 +12,8 @@ mod shell;
 
 use std::sync::LazyLock;
 
-use desk::{BOOT, Desk, loader};
-use lizard_core::memory::copies::RESTED;
+use desk::{BOOT_LOADER_START, Desk, loader};
+use lizard_core::memory::copies::REST_POSE;
 use lizard_core::memory::record::{LENGTH, SIZE};
 use lizard_core::numbers::section::START;
 use lizard_host::firmware::label;
@@ -47,7 +47,7 @@ static TALKER: LazyLock<Image> = LazyLock::new(|| {
 fn firmware_of(robot: &Robot) -> Vec<u8> {
     let image = lizard_host::firmware::image_with(robot);
     let uno = Uno::with_image(image, Fidelity::DataSheet);
-    uno.flash()[..BOOT].to_vec()
+    uno.flash()[..BOOT_LOADER_START].to_vec()
 }
 
 /// The flash below the boot loader of a board that has the firmware and the robot under test.
@@ -76,7 +76,7 @@ fn lizard_flash(desk: &Desk, arguments: &[&str]) -> Shell {
 /// Checks that an upload has left the EEPROM alone. The firmware writes there itself only the rest
 /// pose, for example when a slow machine makes the program reset the board several times.
 fn assert_kept(desk: &Desk, kept: &[u8; SIZE]) {
-    let rest = usize::from(RESTED.0)..usize::from(RESTED.0 + LENGTH);
+    let rest = usize::from(REST_POSE.0)..usize::from(REST_POSE.0 + LENGTH);
     let now = desk.uno.eeprom();
     let changed = |at: &usize| now[*at] != kept[*at] && !rest.contains(at);
     let changes: Vec<usize> = (0..SIZE).filter(changed).collect();
@@ -93,13 +93,13 @@ fn unplug(desk: &mut Desk) {
 
 /// Runs the board until the program has ended. Returns the last screen.
 fn end(desk: &mut Desk, shell: &Shell) -> String {
-    desk.end(shell);
+    desk.run_until_exit(shell);
     shell.last_screen()
 }
 
 /// Waits for a successful upload, and checks that the robot reports its firmware. Returns the
 /// screen.
-fn end_well(desk: &mut Desk, shell: &Shell) -> String {
+fn expect_success(desk: &mut Desk, shell: &Shell) -> String {
     let screen = end(desk, shell);
     assert!(screen.contains("\n# lizard "), "{screen}");
     desk.assert_written(&firmware());
@@ -109,7 +109,7 @@ fn end_well(desk: &mut Desk, shell: &Shell) -> String {
 /// Begins an upload to a board, and waits until some pages of the new code are written.
 fn begin(desk: &mut Desk) -> Shell {
     let shell = lizard_flash(desk, &[]);
-    let half = desk.until(|uno| uno.flash()[0x1000] != 0xff || shell.has_ended());
+    let half = desk.run_until(|uno| uno.flash()[0x1000] != 0xff || shell.has_ended());
     let screen = shell.screen();
     let has_begun = half && !shell.has_ended();
     assert!(has_begun, "the upload has begun:\n{screen}");
@@ -127,7 +127,7 @@ fn with_firmware() -> Desk {
 fn a_blank_board_is_written_and_its_robot_says_what_it_is() {
     let mut desk = Desk::with_a_new_board();
     let shell = lizard_flash(&desk, &[]);
-    let screen = end_well(&mut desk, &shell);
+    let screen = expect_success(&mut desk, &shell);
     assert!(screen.contains("the board has no program\n"), "{screen}");
     // Erased flash between code and robot needs no writing.
     assert!(screen.contains(" bytes written and verified, "), "{screen}");
@@ -141,9 +141,9 @@ fn a_board_whose_program_never_stops_talking_is_written_and_keeps_its_eeprom() {
     let kept: [u8; 1024] = std::array::from_fn(|at| (at * 7 + at / 256) as u8);
     desk.uno.set_eeprom(&kept);
     let shell = lizard_flash(&desk, &[]);
-    desk.see(&shell, "written and verified");
+    desk.wait_for_text(&shell, "written and verified");
     assert_kept(&desk, &kept);
-    let screen = end_well(&mut desk, &shell);
+    let screen = expect_success(&mut desk, &shell);
     let found = format!("the board has another program, of {} bytes\n", talker.len());
     assert!(screen.contains(&found), "{screen}");
 }
@@ -152,7 +152,7 @@ fn a_board_whose_program_never_stops_talking_is_written_and_keeps_its_eeprom() {
 fn a_board_that_has_the_image_is_left_as_it_is() {
     let mut desk = with_firmware();
     let shell = lizard_flash(&desk, &[]);
-    let screen = end_well(&mut desk, &shell);
+    let screen = expect_success(&mut desk, &shell);
     let already = format!("robot {} already", label(robot().firmware()));
     assert!(screen.contains(&already), "{screen}");
     assert!(screen.contains("nothing to write: all"), "{screen}");
@@ -164,7 +164,7 @@ fn one_page_that_differs_is_written_alone() {
     let old = desk.uno.flash()[0x2005];
     desk.uno.set_flash(0x2005, &[old ^ 0x10]);
     let shell = lizard_flash(&desk, &[]);
-    let screen = end_well(&mut desk, &shell);
+    let screen = expect_success(&mut desk, &shell);
     let another = "the board has another build of lizard";
     assert!(screen.contains(another), "{screen}");
     // The page that differs, and the one at address 0, where the chip starts.
@@ -198,7 +198,7 @@ fn a_board_unplugged_in_the_middle_does_nothing_until_it_is_written_again() {
     unplug(&mut desk);
 
     let shell = lizard_flash(&desk, &[]);
-    end_well(&mut desk, &shell);
+    expect_success(&mut desk, &shell);
 }
 
 #[test]
@@ -206,7 +206,7 @@ fn a_board_whose_button_is_pressed_in_the_middle_is_called_again_and_written() {
     let mut desk = Desk::with_a_new_board();
     let shell = begin(&mut desk);
     desk.uno.reset();
-    let screen = end_well(&mut desk, &shell);
+    let screen = expect_success(&mut desk, &shell);
     assert!(screen.contains("is reset for another attempt"), "{screen}");
 }
 
@@ -215,7 +215,7 @@ fn a_byte_that_changes_after_it_was_written_is_written_again() {
     let mut desk = Desk::with_a_new_board();
     let shell = lizard_flash(&desk, &[]);
     let mut changed = false;
-    let ended = desk.until(|uno| {
+    let ended = desk.run_until(|uno| {
         // Long before it is read back.
         if !changed && uno.flash()[0x280] != 0xff {
             uno.set_flash(0x211, &[uno.flash()[0x211] ^ 0x10]);
@@ -234,12 +234,16 @@ fn a_byte_that_changes_after_it_was_written_is_written_again() {
 fn a_board_without_a_boot_loader_that_answers_is_explained() {
     let mut desk = Desk::with_a_new_board();
     // A boot loader that does nothing: `rjmp .-2`.
-    desk.uno.set_flash(BOOT as u16, &[0xff, 0xcf]);
+    desk.uno.set_flash(BOOT_LOADER_START as u16, &[0xff, 0xcf]);
     let shell = lizard_flash(&desk, &[]);
     let screen = end(&mut desk, &shell);
     assert!(
         screen.contains("no boot loader answers. Is it a UNO or a Nano?"),
         "{screen}"
     );
-    assert!(desk.uno.flash()[..BOOT].iter().all(|&byte| byte == 0xff));
+    assert!(
+        desk.uno.flash()[..BOOT_LOADER_START]
+            .iter()
+            .all(|&byte| byte == 0xff)
+    );
 }

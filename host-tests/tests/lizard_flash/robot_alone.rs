@@ -24,7 +24,7 @@ fn a_robot_alone_is_written_behind_the_firmware_and_the_trims_are_kept() {
     let kept = desk.uno.eeprom();
 
     let shell = lizard_flash(&desk, &["--only-robot", "--robot", name]);
-    desk.see(&shell, "written and verified");
+    desk.wait_for_text(&shell, "written and verified");
     assert_kept(&desk, &kept);
     let screen = end(&mut desk, &shell);
     let [its, now] = [robot(), &other].map(|robot| label(robot.firmware()));
@@ -62,7 +62,7 @@ fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
     let section = other.section();
     // The third page of the robot is written.
     let third = usize::from(START) + 0x100;
-    let half = desk.until(|uno| {
+    let half = desk.run_until(|uno| {
         let there = uno.flash()[third..third + 0x80] == section[0x100..0x180];
         there || shell.has_ended()
     });

@@ -42,7 +42,7 @@ fn degrees(sweep: i32) -> f64 {
 #[test]
 fn the_name_the_pins_and_the_supplies_are_read_back() {
     for_each_robot(|name, robot, toml, _| {
-        let label: String = robot.label().map(char::from).collect();
+        let label: String = robot.robot_name().map(char::from).collect();
         assert_eq!(label, toml.name(), "{name}");
         assert_eq!(robot.pins(), toml.servos().map(|servo| servo.pin), "{name}");
         let supplies = toml.supplies();
@@ -253,10 +253,10 @@ fn the_curves_at_every_point_of_their_tables_are_read_back() {
                     let exact = (1024.0 * exact).min(32_767.0);
                     // One unit of rounding, and the rounding of `s`, which matters where the curve is
                     // steep.
-                    let hair = 1.01 + exact * 2.0 / (s - smallest).min(reach - s).max(1.0);
+                    let tolerance = 1.01 + exact * 2.0 / (s - smallest).min(reach - s).max(1.0);
                     let error = f64::from(entry) - exact;
                     assert!(
-                        error.abs() <= hair,
+                        error.abs() <= tolerance,
                         "{name} {end:?} {index}: {entry} for {exact}"
                     );
                 }

@@ -9,7 +9,7 @@ use std::thread;
 
 use fastrand::Rng;
 use lizard_host_tests::avr_gcc::{link, object_of_c};
-use lizard_host_tests::times;
+use lizard_host_tests::scaled;
 use lizard_linker::{ROUTINES, shrink};
 use simulated_uno::{Fidelity, Image, Uno};
 
@@ -170,7 +170,7 @@ fn differences(seed: u64) -> Option<(Vec<usize>, bool)> {
 
 #[test]
 fn random_functions_with_arguments_on_the_stack_compute_the_same() {
-    let seeds = times(PROGRAMS);
+    let seeds = scaled(PROGRAMS);
     let next = AtomicU64::new(0);
     let claim = || Some(next.fetch_add(1, Relaxed)).filter(|&seed| seed < seeds);
     let share = || -> Vec<_> {

@@ -5,8 +5,8 @@ mod lines;
 
 use lizard_core::console::line::GARBLED;
 use lizard_core::control::fault::Fault;
-use lizard_core::memory::copies::{COPIES, RESTED};
-use lizard_core::memory::record::{LENGTH, WHOLE};
+use lizard_core::memory::copies::{COPIES, REST_POSE};
+use lizard_core::memory::record::{LENGTH, VALID_MARK};
 use lizard_core::memory::restart::{Cause, Restart};
 use lizard_core::numbers::rate::Rate;
 use lizard_core::numbers::robot::Robot;
@@ -44,7 +44,7 @@ pub struct World {
     pub observer: Observer,
     now: Time,
     /// True while three servos that wake pull the supply down.
-    is_weak: bool,
+    sags_when_servos_wake: bool,
     /// True if main was late for the last frame.
     is_late: bool,
     /// The last line that was sent, until its answer is known.
@@ -52,7 +52,7 @@ pub struct World {
     /// The rate at which lines are sent.
     sender: Rate,
     /// Number of lines whose answers are judged already and not printed yet.
-    known: u8,
+    judged_answers: u8,
 }
 
 impl World {
@@ -64,11 +64,11 @@ impl World {
             running: Running::with(robot, memory, Restart::default()),
             observer: Observer::new(inside::limits(&robot)),
             now: 0,
-            is_weak: false,
+            sags_when_servos_wake: false,
             is_late: false,
             unread: None,
             sender: Rate::Fastest,
-            known: 0,
+            judged_answers: 0,
         };
         world.observe(Event::Supply(5_000));
         world.observe(Event::Start(Cause::Power));
@@ -81,10 +81,10 @@ impl World {
         let mut fingerprint = Fingerprint(fingerprint::coarse(&self.running.main));
         fingerprint.add(fingerprint::coarse(&self.observer.coarse()));
         let memory = board.memory.bytes();
-        for record in COPIES.map(|copy| copy.0).into_iter().chain([RESTED.0]) {
+        for record in COPIES.map(|copy| copy.0).into_iter().chain([REST_POSE.0]) {
             let record = &memory[usize::from(record)..][..usize::from(LENGTH)];
             // The content of a record that is not valid is never used.
-            let used = if record[0] == WHOLE {
+            let used = if record[0] == VALID_MARK {
                 record
             } else {
                 &record[..2]
@@ -99,19 +99,19 @@ impl World {
         let flags = [
             board.memory.is_worn,
             board.has_boot_loader,
-            board.memory.under_way().is_some(),
-            board.is_hushed(),
+            board.memory.address_in_write().is_some(),
+            board.are_pulses_ended(),
             board.is_stack_intact,
             board.converter.is_complete(),
             board.transmitter.is_held,
             board.restart().before.is_some(),
             board.unread() > 0,
-            board.is_fresh(),
+            board.is_frame_pending(),
             board.closed & 1 << BUTTON != 0,
             board.closed & 1 << NOSE != 0,
-            self.is_weak,
+            self.sags_when_servos_wake,
             self.is_late,
-            self.known > 0,
+            self.judged_answers > 0,
         ];
         fingerprint.add(flags.iter().fold(u64::from(truth.reference), |all, flag| {
             all << 1 | u64::from(*flag)
@@ -124,7 +124,9 @@ impl World {
         let board = &self.running.board;
         match action {
             Action::Say(_) | Action::Noise => {
-                board.unread() == 0 && !board.transmitter.is_held && !self.running.is_over()
+                board.unread() == 0
+                    && !board.transmitter.is_held
+                    && !self.running.is_stopped_by_watchdog()
             }
             Action::Step => self.running.has_output() || self.running.main.control().is_writing(),
             Action::Frames(_)
@@ -132,9 +134,9 @@ impl World {
             | Action::Reset(_)
             | Action::LosePower(None)
             | Action::Supply(_) => true,
-            Action::LosePower(Some(_)) => board.memory.under_way().is_some(),
+            Action::LosePower(Some(_)) => board.memory.address_in_write().is_some(),
             Action::SendAt(rate) => rate != self.sender,
-            Action::Weak(weak) => weak != self.is_weak,
+            Action::Weak(weak) => weak != self.sags_when_servos_wake,
             Action::Late => board.late < 3,
             Action::Stack => board.is_stack_intact,
             Action::Contact(pin, closed) => closed != (board.closed & 1 << pin != 0),
@@ -155,7 +157,7 @@ impl World {
             Action::Say(line) => self.say(line, line.as_bytes())?,
             Action::SendAt(rate) => {
                 self.sender = rate;
-                self.is_found()?;
+                self.check_rate_is_found()?;
             }
             Action::Noise => self.say("", &[b'w', b'a', GARBLED, b'k'])?,
             Action::Step => {
@@ -170,7 +172,7 @@ impl World {
                 self.running.board.converter.set(truth);
                 self.observe(Event::Supply(u32::from(mv)));
             }
-            Action::Weak(weak) => self.is_weak = weak,
+            Action::Weak(weak) => self.sags_when_servos_wake = weak,
             Action::Late => {
                 self.running.board.late += 1;
                 self.observe(Event::Fault);
@@ -215,7 +217,7 @@ impl World {
     fn note_restart(&mut self, cause: Cause) {
         self.running.board.transmitter.text.clear();
         self.unread = None;
-        self.known = 0;
+        self.judged_answers = 0;
         self.observe(Event::Start(cause));
     }
 
@@ -253,7 +255,7 @@ impl World {
     }
 
     fn frame(&mut self) -> Verdict {
-        if self.running.is_over() {
+        if self.running.is_stopped_by_watchdog() {
             // Main no longer runs; the watchdog is about to restart it.
             return self.stall(20);
         }
@@ -272,12 +274,13 @@ impl World {
         // The decision was made at the start of the frame.
         self.listen(since + MS)?;
         self.judge_writes()?;
-        let is_heard = !self.running.board.transmitter.is_held && !self.running.is_over();
+        let is_heard =
+            !self.running.board.transmitter.is_held && !self.running.is_stopped_by_watchdog();
         if is_heard && !self.is_late {
             self.observer.check_reported();
         }
         self.is_late = false;
-        if self.is_weak
+        if self.sags_when_servos_wake
             && self
                 .running
                 .board
@@ -318,11 +321,11 @@ impl World {
 
     /// Lets time pass while main does not run; true if the watchdog has restarted the program.
     fn pass_time(&mut self, ms: u16) -> bool {
-        let bites = self.running.board.pass_time(ms);
-        if bites {
+        let was_reset = self.running.board.pass_time(ms);
+        if was_reset {
             self.reset(Cause::Watchdog);
         }
-        bites
+        was_reset
     }
 
     /// Judges the bytes that were written to the memory.

@@ -3,7 +3,7 @@
 
 use lizard_core::console::command::{effect, parse};
 use lizard_core::console::word::Effect;
-use lizard_core::memory::copies::{self, Outcome, RESTED};
+use lizard_core::memory::copies::{self, Outcome, REST_POSE};
 use lizard_core::memory::record::Memory;
 use lizard_core::memory::restart::{Cause, Restart};
 use lizard_core::memory::settings::Settings;
@@ -178,7 +178,7 @@ impl Board {
         let outcome = copies::load(robot, self.memory(), &mut settings);
         let is_whole = matches!(outcome, Outcome::Latest | Outcome::Blank);
         assert!(is_whole, "{rule}: {outcome:?}");
-        let is_forgotten = self.memory().read(RESTED.0) == 0xff;
+        let is_forgotten = self.memory().read(REST_POSE.0) == 0xff;
         let is_rest = copies::last_rest_pose(robot, self.memory()).is_some();
         assert!(is_forgotten || is_rest, "{rule}: a pose");
         assert!(

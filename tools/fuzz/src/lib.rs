@@ -14,7 +14,7 @@ pub use board::Board;
 
 use std::sync::LazyLock;
 
-use lizard_core::memory::copies::{COPIES, RESTED};
+use lizard_core::memory::copies::{COPIES, REST_POSE};
 use lizard_core::memory::record::{Address, CONTENT, Progress};
 use lizard_core::memory::settings::Settings;
 use lizard_core::virtual_board::Eeprom;
@@ -59,7 +59,7 @@ pub fn memory(data: &[u8]) {
     let robot = robot();
     let mut memory = Eeprom::blank();
     let (records, patches) = data.split_at(data.len().min(3 * CONTENT));
-    let places = [COPIES[0], COPIES[1], RESTED];
+    let places = [COPIES[0], COPIES[1], REST_POSE];
     for (place, change) in places.into_iter().zip(records.chunks(CONTENT)) {
         let mut content = *Settings::of(robot.firmware()).bytes();
         for (byte, change) in content.iter_mut().zip(change) {
@@ -78,7 +78,7 @@ pub fn memory(data: &[u8]) {
         board.frame();
     }
     let kept = board.memory().bytes();
-    let settings = 0..usize::from(RESTED.0);
+    let settings = 0..usize::from(REST_POSE.0);
     assert_eq!(
         kept[settings.clone()],
         before.bytes()[settings],

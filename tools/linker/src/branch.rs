@@ -10,7 +10,7 @@ use object::elf;
 
 use crate::code::Code;
 use crate::edit::{Edit, Reference};
-use crate::instruction::{is_branch, is_rjmp, skips};
+use crate::instruction::{is_branch, is_rjmp, may_skip_next};
 
 /// The reach of a branch, bytes. Later edits never increase a distance.
 const REACH: u64 = 2 * 60;
@@ -28,7 +28,7 @@ pub fn edit(
         .enumerate()
         .find_map(|(index, pair)| {
             let [branch, jump] = pair else { return None };
-            let skipped = index > 0 && skips(code.instructions[index - 1].code);
+            let skipped = index > 0 && may_skip_next(code.instructions[index - 1].code);
             if skipped || !is_branch(branch.code) || !is_rjmp(jump.code) {
                 return None;
             }

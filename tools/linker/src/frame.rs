@@ -103,7 +103,7 @@ impl Frame {
         let mut index = body;
         // Every use of the stack pointer and every pop has to belong to an epilogue.
         while let Some(at) = code.instructions.get(index) {
-            if let Some(words) = end(code, index, &registers, room, has_room) {
+            if let Some(words) = epilogue_length(code, index, &registers, room, has_room) {
                 let start = code.offset(index);
                 ends.push((start, code.offset(index + words) - start));
                 index += words;
@@ -202,7 +202,13 @@ fn is_local(code: &Code, index: usize, room: u8) -> bool {
 
 /// The number of instructions of the epilogue at an index, if it is there and matches the
 /// prologue.
-fn end(code: &Code, index: usize, registers: &[u8], room: u8, has_room: bool) -> Option<usize> {
+fn epilogue_length(
+    code: &Code,
+    index: usize,
+    registers: &[u8],
+    room: u8,
+    has_room: bool,
+) -> Option<usize> {
     let mut words = code.words(index).peekable();
     let mut count = 0;
     if has_room {

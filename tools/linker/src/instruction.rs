@@ -65,7 +65,7 @@ pub const fn is_call(code: u16) -> bool {
 }
 
 /// True for instructions that may skip the next one: `cpse`, `sbrc`, `sbrs`, `sbic`, `sbis`.
-pub const fn skips(code: u16) -> bool {
+pub const fn may_skip_next(code: u16) -> bool {
     code & 0xfc00 == 0x1000 || code & 0xfc08 == 0xfc00 || code & 0xfd00 == 0x9900
 }
 

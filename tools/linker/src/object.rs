@@ -52,7 +52,7 @@ pub fn shrink(file: &[u8]) -> Result<Option<(Vec<u8>, Savings)>, ShrinkError> {
     }
     let mut object = Object(Builder::read(file)?);
     object.name_sections();
-    let routines = object.routines();
+    let routines = object.add_routine_symbols();
     let mut savings = Savings::default();
     for (section, edits) in object.frames(&routines) {
         savings.frames += edits.gain();
@@ -87,7 +87,7 @@ impl Object<'_> {
     }
 
     /// Adds symbols for the routines of [`FIRST_REGISTERS`], which are in another object.
-    fn routines(&mut self) -> Vec<Routines> {
+    fn add_routine_symbols(&mut self) -> Vec<Routines> {
         let mut undefined = |name: String| {
             let symbol = self.0.symbols.add();
             symbol.name = name.into_bytes().into();

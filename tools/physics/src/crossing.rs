@@ -31,7 +31,7 @@ impl Crossing {
     /// The crossing of a gait with this displacement by a cycle, after some cycles that are not
     /// measured.
     pub fn of(robot: &Robot, by_cycle: Displacement, unmeasured: u32) -> Self {
-        let feet = robot.ground().feet.at([0.0; 4]);
+        let feet = robot.ground().feet.positions([0.0; 4]);
         let along = |place: Place, heading: f64| {
             let (sin, cos) = heading.to_radians().sin_cos();
             feet_at(place, feet).map(|[ahead, left]| ahead * cos + left * sin)

@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use lizard_robot::{CheckedGait, Effort, GRAVITY, Robot, ServoType, TIGHT};
+use lizard_robot::{CheckedGait, Effort, GRAVITY, HIGH_LINE_SHARE, Robot, ServoType};
 
 /// The table in `docs/measure.md`.
 pub fn expected(robot: &Robot) -> String {
@@ -103,7 +103,7 @@ pub fn expected(robot: &Robot) -> String {
             format!(
                 "{} V; {:.1} V or more will do",
                 servo.volts,
-                servo.volts * need.line / TIGHT
+                servo.volts * need.line / HIGH_LINE_SHARE
             ),
             "[servo] volts",
         ),
@@ -164,7 +164,7 @@ impl<'a> HardestGait<'a> {
     /// The value of a servo's key at which its torque-speed line is nearly used up, within a factor
     /// of four of its own value.
     fn limit(&self, own: f64, servo: impl Fn(f64) -> ServoType) -> f64 {
-        let does = |value: f64| Self::line(self.robot, self.gait, &servo(value)) <= TIGHT;
+        let does = |value: f64| Self::line(self.robot, self.gait, &servo(value)) <= HIGH_LINE_SHARE;
         let mut good = own;
         let mut bad = if does(2.0 * own) {
             own / 4.0

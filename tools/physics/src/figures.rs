@@ -51,7 +51,7 @@ const STIFF: (f64, f64, f64) = (5.0, 0.35, 4.0);
 /// If a gait moves less than this in the model, mm and deg, MuJoCo may differ by `CREEPS` mm: it
 /// moves nearly equally fast in both directions, so that inertia decides.
 const NOWHERE: (f64, f64) = (1.0, 0.5);
-const CREEPS: f64 = 3.5;
+const STANDSTILL_TOLERANCE_MM: f64 = 3.5;
 
 impl Answers {
     /// The allowed difference between MuJoCo and the model, mm and deg.
@@ -64,7 +64,7 @@ impl Answers {
         let [ahead, left, turn] = self.model.unwrap_or_default().0;
         let displacement = ahead.hypot(left);
         match displacement < NOWHERE.0 && turn.abs() < NOWHERE.1 {
-            true => (mm.max(CREEPS), deg),
+            true => (mm.max(STANDSTILL_TOLERANCE_MM), deg),
             false => (mm.max(share * displacement), deg),
         }
     }

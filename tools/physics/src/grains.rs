@@ -84,7 +84,7 @@ pub fn model(robot: &Robot, gait: &CheckedGait, ratio: f64) -> Option<Displaceme
         ..*robot.ground()
     };
     let decided = gait.predict(&ground).is_decided();
-    decided.then(|| gait.walked(&ground).travel.into())
+    decided.then(|| gait.simulate_cycle(&ground).travel.into())
 }
 
 /// The answers of model and MuJoCo for every gait and ratio.

@@ -79,7 +79,7 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         .map(|(_, robot)| rows(robot).into_iter().filter(|_| is_one()).collect())
         .collect();
     let kept = Figures::stored();
-    let uneven: Vec<Uneven> = Uneven::all(&kept)
+    let uneven: Vec<UnevenWalk> = UnevenWalk::all(&kept)
         .into_iter()
         .filter(|_| is_one())
         .collect();
@@ -153,7 +153,7 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     }
     let (before, mut surfaces) = (surface::stored(), Surfaces::new());
     for (index, walk) in uneven.iter().enumerate() {
-        let Uneven {
+        let UnevenWalk {
             robot,
             gait,
             level,
@@ -161,14 +161,14 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         } = walk;
         let displacement = by_mujoco[&name(SURFACE, index)];
         let mut words = surface::excess_losses(*surface, *level, displacement);
-        if surface::is_below(robot, gait, *surface) {
+        if surface::is_known_shortfall(robot, gait, *surface) {
             words.clear();
         }
         if !write {
             let of = before.get(*robot).and_then(|of| of.get(gait));
             let was = of.and_then(|of| of.get(&surface.to_string()));
             words.extend(match was {
-                Some(was) => differs("MuJoCo", *was, displacement),
+                Some(was) => describe_difference("MuJoCo", *was, displacement),
                 None => Some(NOT_KEPT.to_owned()),
             });
         }
@@ -216,8 +216,11 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     }
     println!("\n{}", pads::table(&by_shape));
     if !write {
-        faults.extend(changed(&assumptions::stored(), &by_assumption));
-        faults.extend(changed(&pads::stored(), &by_shape));
+        faults.extend(describe_displacement_changes(
+            &assumptions::stored(),
+            &by_assumption,
+        ));
+        faults.extend(describe_displacement_changes(&pads::stored(), &by_shape));
     }
     let pads = robot(grains::ROBOT);
     // With `--one-in`, which saves time, these are left out.
@@ -227,7 +230,7 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         faults.extend(grains::disagreements(&walked));
         match write {
             true => grains::store(&walked)?,
-            false => faults.extend(other(&grains::stored(), &walked)),
+            false => faults.extend(describe_grain_changes(&grains::stored(), &walked)),
         }
     }
     if write {
@@ -248,7 +251,7 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
 }
 
 /// A walk on a floor that is not level and even.
-struct Uneven {
+struct UnevenWalk {
     robot: &'static str,
     gait: String,
     /// The gait's displacement on a level floor.
@@ -256,7 +259,7 @@ struct Uneven {
     surface: Surface,
 }
 
-impl Uneven {
+impl UnevenWalk {
     fn all(figures: &Figures) -> Vec<Self> {
         let mut all = Vec::new();
         for robot in surface::ROBOTS {
@@ -275,7 +278,7 @@ impl Uneven {
 }
 
 /// The messages for answers on pads with a grain that differ from the stored ones.
-fn other(kept: &Grains, now: &Grains) -> Vec<String> {
+fn describe_grain_changes(kept: &Grains, now: &Grains) -> Vec<String> {
     let each = now.iter().flat_map(|(gait, answers)| {
         let kept = kept.get(gait).map_or(&[][..], Vec::as_slice);
         let pairs = answers.iter().zip(grains::RATIOS).enumerate();
@@ -292,13 +295,13 @@ fn other(kept: &Grains, now: &Grains) -> Vec<String> {
 type Named = BTreeMap<String, BTreeMap<String, Displacement>>;
 
 /// The messages for displacements by two names that differ from the stored ones.
-fn changed(stored: &Named, now: &Named) -> Vec<String> {
+fn describe_displacement_changes(stored: &Named, now: &Named) -> Vec<String> {
     let all = now
         .iter()
         .flat_map(|(group, of)| of.iter().map(move |(name, is)| (group, name, is)));
     let words = all.filter_map(|(group, name, is)| {
         let words = match stored.get(group).and_then(|of| of.get(name)) {
-            Some(was) => differs("MuJoCo", *was, *is)?,
+            Some(was) => describe_difference("MuJoCo", *was, *is)?,
             None => NOT_KEPT.to_owned(),
         };
         Some(format!("paper, {group}: {name}: {words}"))
@@ -321,12 +324,12 @@ fn describe_changes(kept: Option<&Answers>, now: &Answers) -> Vec<String> {
     ];
     let changed = all.into_iter();
     changed
-        .filter_map(|(who, before, now)| differs(who, before, now))
+        .filter_map(|(who, before, now)| describe_difference(who, before, now))
         .collect()
 }
 
 /// The message for an answer that differs from the stored one.
-fn differs(who: &str, before: Displacement, now: Displacement) -> Option<String> {
+fn describe_difference(who: &str, before: Displacement, now: Displacement) -> Option<String> {
     let (mm, deg) = before.distance_to(&now);
     (mm > TOLERANCES.0 || deg > TOLERANCES.1).then(|| {
         format!("{who} differs by {mm:.1} mm and {deg:.1} deg from what is kept; if that is meant, `make physics WRITE=1`")

@@ -31,7 +31,7 @@ impl Row {
     /// If the robot has no such gait.
     pub fn model(&self, robot: &Robot) -> Option<Displacement> {
         let gait = robot.gait(&self.gait).expect("it is the robot's");
-        let walked = || gait.walked(&self.case.ground(robot)).travel;
+        let walked = || gait.simulate_cycle(&self.case.ground(robot)).travel;
         self.is_decided.then(|| walked().into())
     }
 }

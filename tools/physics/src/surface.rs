@@ -21,14 +21,14 @@ use crate::table::Part;
 pub const ROBOTS: [&str; 5] = ["paper", "own-gaits", "large", "unequal", grains::ROBOT];
 
 /// The least displacement by a cycle, mm and deg, of a gait that walks; others look around or wag.
-const WALKS: (f64, f64) = (9.0, 3.0);
+const MIN_DISPLACEMENT: (f64, f64) = (9.0, 3.0);
 
 /// The parts of the displacement on a level floor for which a gait is made: distance, turn, or
 /// both.
 pub(crate) fn parts(Displacement([ahead, _, turn]): Displacement) -> Vec<Part> {
     let all = [
-        (Part::Ahead, ahead.abs() > WALKS.0),
-        (Part::Turn, turn.abs() > WALKS.1),
+        (Part::Ahead, ahead.abs() > MIN_DISPLACEMENT.0),
+        (Part::Turn, turn.abs() > MIN_DISPLACEMENT.1),
     ];
     all.into_iter()
         .filter(|(_, is_for)| *is_for)
@@ -74,7 +74,7 @@ pub enum Surface {
     /// A slope that rises ahead, deg.
     Slope(u8),
     /// Friction of 0.4 for the left feet and 0.8 for the right ones.
-    Uneven,
+    UnequalFriction,
     /// The front left foot has lost its pad.
     NoPad,
 }
@@ -88,7 +88,7 @@ impl Surface {
         Self::Blocks(10),
         Self::Slope(3),
         Self::Slope(8),
-        Self::Uneven,
+        Self::UnequalFriction,
         Self::NoPad,
     ];
 
@@ -125,9 +125,9 @@ impl Surface {
             Self::Edge(tenths) => floor.blocks.push(crossing.block(mm(tenths))),
             Self::Blocks(tenths) => floor.blocks = strewn_blocks(robot, mm(tenths)),
             Self::Slope(deg) => floor.rises = direction * f64::from(deg),
-            Self::Uneven => {
+            Self::UnequalFriction => {
                 let side = |[_, left]: [f64; 2]| if left > 0.0 { 0.4 } else { 0.8 };
-                floor.friction = robot.ground().feet.at([0.0; 4]).map(side);
+                floor.friction = robot.ground().feet.positions([0.0; 4]).map(side);
             }
             // The screw's head, of steel, on the floor.
             Self::NoPad => floor.friction[0] = 0.2,
@@ -141,7 +141,11 @@ impl Surface {
     /// If the robot has no such gait.
     pub fn scene(self, name: &str, assembly: &Assembly, gait: &str, level: Displacement) -> Scene {
         let robot = assembly.robot();
-        let direction = if level.0[0] < -WALKS.0 { -1.0 } else { 1.0 };
+        let direction = if level.0[0] < -MIN_DISPLACEMENT.0 {
+            -1.0
+        } else {
+            1.0
+        };
         let mut scene = scene_of(name, assembly, gait, Case::ALL[0]);
         scene.ratio = robot.ground().ratio;
         let gait = robot.gait(gait).expect("it is the robot's");
@@ -174,7 +178,7 @@ fn mm(tenths: u8) -> f64 {
 fn strewn_blocks(robot: &Robot, high: f64) -> Vec<Block> {
     const SQUARE: f64 = 30.0;
     const REACH: i32 = 12;
-    let feet = robot.ground().feet.at([0.0; 4]);
+    let feet = robot.ground().feet.positions([0.0; 4]);
     let mut seed: u32 = 1;
     let mut random = |low: f64, max: f64| {
         // The constants of Numerical Recipes; the upper half of the bits is random enough.
@@ -204,7 +208,7 @@ impl fmt::Display for Surface {
             Self::Edge(tenths) => write!(f, "edge of {} mm", mm(*tenths)),
             Self::Blocks(tenths) => write!(f, "blocks of {} mm", mm(*tenths)),
             Self::Slope(deg) => write!(f, "rises {deg} deg"),
-            Self::Uneven => f.write_str("friction .4, .8"),
+            Self::UnequalFriction => f.write_str("friction .4, .8"),
             Self::NoPad => f.write_str("a pad lost"),
         }
     }
@@ -232,14 +236,14 @@ pub fn level(figures: &Figures, gait: &str) -> Displacement {
 
 /// The gaits that are known to keep less than they should, each with its robot and surface. On pads
 /// with a grain, `back` pushes against the grain.
-pub const BELOW: [(&str, &str, Surface); 2] = [
+pub const KNOWN_SHORTFALLS: [(&str, &str, Surface); 2] = [
     (grains::ROBOT, "back", Surface::Edge(20)),
     (grains::ROBOT, "back", Surface::Blocks(10)),
 ];
 
 /// True for a gait of [`BELOW`].
-pub fn is_below(robot: &str, gait: &str, surface: Surface) -> bool {
-    BELOW.contains(&(robot, gait, surface))
+pub fn is_known_shortfall(robot: &str, gait: &str, surface: Surface) -> bool {
+    KNOWN_SHORTFALLS.contains(&(robot, gait, surface))
 }
 
 /// The least share of a displacement's part that a gait must keep on a surface.

@@ -86,7 +86,7 @@ fn every_gait_keeps_its_way_over_edges_and_blocks_and_its_turn_on_every_floor() 
             for surface in Surface::of(name) {
                 let displacement = kept[name][&gait][&surface.to_string()];
                 let losses = surface::excess_losses(surface, level, displacement);
-                let is_below = surface::is_below(name, &gait, surface);
+                let is_below = surface::is_known_shortfall(name, &gait, surface);
                 assert_eq!(
                     !losses.is_empty(),
                     is_below,
@@ -119,7 +119,7 @@ fn every_foot_is_before_the_edge_at_the_start_and_past_it_at_the_end_but_of_gait
     let figures = Figures::stored();
     let mut turns = Vec::new();
     for name in surface::ROBOTS {
-        let feet = robot(name).ground().feet.at([0.0; 4]);
+        let feet = robot(name).ground().feet.positions([0.0; 4]);
         for (gait, level) in surface::gaits(&figures, name) {
             let crossing = Crossing::of(&robot(name), level, 0);
             if !crossing.passes {

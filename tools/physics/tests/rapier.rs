@@ -30,7 +30,8 @@ fn ground() -> Ground {
 fn assert_agreement(ground: &Ground, expected: &Displacements, mm: f64, deg: f64) {
     let paper = robot("paper");
     for (name, displacement) in GAITS.into_iter().zip(expected) {
-        let by_model = Displacement::from(paper.gait(name).expect(name).walked(ground).travel);
+        let by_model =
+            Displacement::from(paper.gait(name).expect(name).simulate_cycle(ground).travel);
         let (distance, turn) = by_model.distance_to(&Displacement(*displacement));
         assert!(
             distance <= mm && turn <= deg,
@@ -66,7 +67,7 @@ fn the_tuned_gait_is_faster_than_walk_in_the_engine_too() {
     let (paper, tuned) = (robot("paper"), robot("own-gaits"));
     let stride = tuned.gait("stride").expect("stride");
     let walk = paper.gait("walk").expect("walk");
-    let by_model = Displacement::from(stride.walked(&ground()).travel);
+    let by_model = Displacement::from(stride.simulate_cycle(&ground()).travel);
     let (distance, turn) = by_model.distance_to(&Displacement([40.95, -0.44, 0.0]));
     assert!(distance <= 0.5 && turn <= 0.3, "{by_model:?}");
     let stored = lizard_physics::Figures::stored();

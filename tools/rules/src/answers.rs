@@ -50,12 +50,15 @@ impl Observer {
                         Some((at + self.limits.frame_left, at + QUIET_TIME, Rule::RestEnds));
                 }
                 let least_good = self.limits.levels[0] + crate::supply::GOOD_ABOVE;
-                let good = self.supply.is_good_since(self.rested, least_good);
-                let again = self.rested > self.start && asked > self.rested + SAVING_TIME;
+                let good = self
+                    .supply
+                    .is_good_since(self.first_rest_command, least_good);
+                let again = self.first_rest_command > self.start
+                    && asked > self.first_rest_command + SAVING_TIME;
                 if again && good && self.limits.keeps_memory {
                     self.pending.unwritten = Some(asked + 500 * MS);
-                } else if self.rested < self.start {
-                    self.rested = asked;
+                } else if self.first_rest_command < self.start {
+                    self.first_rest_command = asked;
                 }
             }
             _ => {}

@@ -20,7 +20,7 @@ pub struct Limits {
     pub levels: [u32; 3],
     /// The largest error of the robot's own measurement of the supply, mV: one step of the
     /// converter, and the rounding to two decimals.
-    pub exact: u32,
+    pub supply_error_mv: u32,
     /// The longest time from the answer to a line to the end of the current frame.
     pub frame_left: Time,
     /// The longest time from a fault to its report on the console.
@@ -46,7 +46,7 @@ impl Default for Limits {
             leap: [u32::MAX; 4],
             widths: [(1_000, 63_000); 4],
             levels: [0; 3],
-            exact: 40,
+            supply_error_mv: 40,
             frame_left: MS,
             report_time: 60 * MS - 1,
             queued: 0,
@@ -88,7 +88,7 @@ pub struct Observer {
     pub(crate) is_driven: bool,
     pub(crate) is_unsaved: bool,
     /// Number of motions begun since the start, less the number reported as done.
-    pub(crate) begun: i32,
+    pub(crate) unfinished_motions: i32,
     pub(crate) permission: Permission,
     pub(crate) servos: [Servo; 4],
     pub(crate) last_begin: (usize, Time, bool),
@@ -97,7 +97,7 @@ pub struct Observer {
     pub(crate) reports: Reports,
     pub(crate) pending: Pending,
     /// Time of the first of consecutive `rest` commands.
-    pub(crate) rested: Time,
+    pub(crate) first_rest_command: Time,
     pub(crate) brown_outs: [Time; 5],
 }
 
@@ -137,7 +137,7 @@ impl Observer {
             command_read: NEVER,
             is_driven: false,
             is_unsaved: false,
-            begun: 0,
+            unfinished_motions: 0,
             permission: Permission::default(),
             servos: [Servo::UNKNOWN; 4],
             last_begin: (0, NEVER, false),
@@ -145,7 +145,7 @@ impl Observer {
             supply: Supply::default(),
             reports: Reports::default(),
             pending: Pending::default(),
-            rested: NEVER,
+            first_rest_command: NEVER,
             brown_outs: [NEVER; 5],
         }
     }
@@ -241,7 +241,7 @@ impl Observer {
 
     /// True if something outside the robot may have ended the pulses since this time.
     pub(crate) fn is_troubled(&self, since: Time) -> bool {
-        let rest = self.limits.levels[2] + self.limits.exact;
+        let rest = self.limits.levels[2] + self.limits.supply_error_mv;
         self.start >= since
             || self.cut >= since
             || self.disturbed > since
@@ -259,11 +259,11 @@ impl Observer {
                 self.disturbed = self.disturbed.max(until);
                 self.stalls.retain(|(_, end)| time - end < 300 * MS);
                 self.stalls.push((time, until));
-                self.is_disturbed();
+                self.cancel_promises();
             }
             Event::HeldUp(until) => {
                 self.disturbed = self.disturbed.max(until);
-                self.is_disturbed();
+                self.cancel_promises();
                 for servo in &mut self.servos {
                     servo.miss_pulses(until);
                 }
@@ -316,7 +316,7 @@ impl Observer {
         self.permission.advance(self.now);
         self.check_silence();
         self.check_pending();
-        let stop = self.limits.levels[1].saturating_sub(self.limits.exact);
+        let stop = self.limits.levels[1].saturating_sub(self.limits.supply_error_mv);
         let low = self.now - 280 * MS;
         let calm = low > self.start && self.disturbed < low;
         if self.reports.stopped.is_none() && calm && self.supply.is_low_since(stop, low) {
@@ -324,7 +324,7 @@ impl Observer {
         }
     }
 
-    fn is_disturbed(&mut self) {
+    fn cancel_promises(&mut self) {
         self.permission.cancel_order();
         self.pending.moves = None;
         self.pending.quiet = None;
@@ -357,8 +357,8 @@ impl Observer {
         self.last_line = at;
         self.deadman = 0;
         self.is_driven = false;
-        self.rested = NEVER;
-        self.begun = 0;
+        self.first_rest_command = NEVER;
+        self.unfinished_motions = 0;
         self.permission.start(cause, at, self.limits.boots_to_rest);
         let keeps = matches!(self.pending.quiet, Some((.., Rule::RestEnds)));
         let quiet = self
@@ -414,11 +414,11 @@ impl Observer {
                 servo.forget_pulse();
             }
         } else {
-            self.rested = NEVER;
+            self.first_rest_command = NEVER;
         }
         if effect == Effect::Moves {
             self.reports.order(done.is_some());
-            self.begun += 1;
+            self.unfinished_motions += 1;
         }
         let calm = self.disturbed <= self.now;
         self.permission

@@ -88,8 +88,8 @@ impl Observer {
             }
         }
         if line == "# done" {
-            self.begun -= 1;
-            if self.begun < 0 {
+            self.unfinished_motions -= 1;
+            if self.unfinished_motions < 0 {
                 self.fail(Rule::Done, "once too often");
             }
         }
@@ -100,7 +100,7 @@ impl Observer {
             if boot == "rest" {
                 self.booted_to_rest = self.now;
             }
-            self.begun += 1;
+            self.unfinished_motions += 1;
             self.permission.note_boot(self.now, boot);
         }
         let is_end = line.ends_with("pulses ended") || line.contains("several times in a row");
@@ -161,7 +161,7 @@ impl Observer {
         if hung && value("reset") != Some("watchdog") {
             self.fail(Rule::Told, text);
         }
-        let stop = self.limits.levels[1].saturating_sub(self.limits.exact);
+        let stop = self.limits.levels[1].saturating_sub(self.limits.supply_error_mv);
         let low = at - 340 * MS;
         if !has_fault && low > self.start && self.supply.is_low_since(stop, low) {
             self.fail(Rule::Told, format!("the supply is low: {text}"));

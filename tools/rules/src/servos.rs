@@ -287,7 +287,10 @@ impl Observer {
             return;
         }
         self.is_silence_judged = true;
-        let [_, stop, rest] = self.limits.levels.map(|mv| mv + self.limits.exact);
+        let [_, stop, rest] = self
+            .limits
+            .levels
+            .map(|mv| mv + self.limits.supply_error_mv);
         let has_reason = self.sent_to_rest > end - 400 * MS
             || self.cut > end - 25 * MS
             || self.start > end - 25 * MS

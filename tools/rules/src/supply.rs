@@ -93,7 +93,7 @@ impl Observer {
             () if text.ends_with("stopped") => stop,
             () => return,
         };
-        let (from, level) = (self.now - 500 * MS, level + self.limits.exact);
+        let (from, level) = (self.now - 500 * MS, level + self.limits.supply_error_mv);
         let low = self.supply.time_below(level, from, self.now);
         if low < SIX_FRAMES {
             let ms = low / MS;
@@ -108,7 +108,7 @@ impl Observer {
             let us = (at - self.start) / 16;
             self.fail(Rule::Written, format!("a byte {us} us after a start"));
         }
-        let slow = self.limits.levels[0].saturating_sub(self.limits.exact);
+        let slow = self.limits.levels[0].saturating_sub(self.limits.supply_error_mv);
         // While main is stalled it takes no readings.
         if self
             .supply

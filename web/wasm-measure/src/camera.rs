@@ -76,7 +76,7 @@ pub struct Camera {
 impl Camera {
     /// Finds the tags of a picture.
     pub fn look(&mut self, picture: &Picture) -> Vec<TagEntry> {
-        let tags = self.film.look(picture).into_iter();
+        let tags = self.film.find_tags(picture).into_iter();
         tags.map(|Tag { id, corners }| TagEntry { id, corners })
             .collect()
     }
@@ -136,7 +136,7 @@ impl Camera {
             }
         };
         let report = Report::new(&robot, asked.speed, setup, films, &gaits, &walks);
-        let report = report.with_ranges(&robot).beside_mujoco(&asked.toml);
+        let report = report.with_ranges(&robot).with_mujoco(&asked.toml);
         Ok(Results {
             gaits: serde_json::to_value(&report.gaits).map_err(Refused::of)?,
             troubles,

@@ -114,7 +114,7 @@ impl Model {
     pub fn read(toml: &str) -> Result<Self, Refused> {
         let robot = Robot::parse(toml).map_err(Refused::of)?;
         let assembly = Assembly::new(&robot);
-        assembly.measures_fit()?;
+        assembly.check_measures()?;
         let mut mounts: Vec<Mount> = Vec::new();
         for body in assembly.bodies() {
             if !mounts.contains(&body.mount) {

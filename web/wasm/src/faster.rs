@@ -6,7 +6,7 @@
 //! final gait is that of `lizard tune` with the same numbers.
 
 use lizard_robot::Bars;
-use lizard_tune::{Comparison, Kind, NoTuning, ScoredParameters, Search, Tuning, trials};
+use lizard_tune::{Comparison, Kind, ScoredParameters, Search, Tuning, TuningError, trials};
 use lizard_twin::Twin;
 use serde::{Deserialize, Serialize};
 use tsify::Tsify;
@@ -88,8 +88,8 @@ impl Faster {
         let (gait, ground) = (&robot.gaits()[1], twin.ground());
         let tuning = Tuning::new(&robot, ground, gait, wish.rate, &wish.bars.name, wish.seed);
         let tuning = tuning.map_err(|no| match no {
-            NoTuning::Goal(_) => refusal("", no.to_string()),
-            NoTuning::Rate { .. } => refusal("rate", format!("servos of at most {no}")),
+            TuningError::Goal(_) => refusal("", no.to_string()),
+            TuningError::Rate { .. } => refusal("rate", format!("servos of at most {no}")),
         })?;
         Ok(Self {
             searches: Kind::ALL.map(|kind| tuning.search(kind)),

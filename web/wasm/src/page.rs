@@ -3,7 +3,7 @@
 
 use lizard_core::virtual_board::Eeprom;
 use lizard_kinematics::End;
-use lizard_robot::edit::{with_number, with_steps, with_word, without};
+use lizard_robot::edit::{with_number, with_steps, with_word, without_key};
 use lizard_robot::servo::FORWARD;
 use lizard_robot::{Bars, Place as Walked, Robot};
 use lizard_twin::{ServoModel, State, Twin};
@@ -128,7 +128,7 @@ impl Page {
             ("leg.drive.rate", own.rate, wanted.rate),
         ] {
             text = match floor.kind {
-                Legs::Rigid => without(&text, key)?,
+                Legs::Rigid => without_key(&text, key)?,
                 Legs::Strut if kind != robot.drive().word() || own != wanted => {
                     with_number(&text, key, wanted)?
                 }

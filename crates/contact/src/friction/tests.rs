@@ -58,7 +58,7 @@ fn certificate(pads: &Pads, displacement: &Displacement) -> ([f64; 3], f64) {
         let along = |[x, y]: Point| force[0] * x + force[1] * y;
         work += along(pads.swing[i]);
         if let Some(compliance) = pads.compliance {
-            let torque = along(compliance.along[i]);
+            let torque = along(compliance.lag_derivatives[i]);
             work += torque * compliance.before[i] - compliance.lag_energy[i].conjugate(torque);
         }
         net[0] += force[0];
@@ -180,7 +180,7 @@ proptest! {
         let upper = force.map_or(Side::Stop, |force| Side::strut(stretch, force, 1.5, 5.0));
         let drive = LagEnergy { play, stop: STOP, lower: Side::Stop, upper, motor: None };
         let compliance = Some(Compliance {
-            along: [[45.0, 0.0]; 4],
+            lag_derivatives: [[45.0, 0.0]; 4],
             before: within.map(|share| share * play),
             lag_energy: [drive; 4],
         });

@@ -136,19 +136,22 @@ pub fn parse(line: &[u8], robot: &Robot) -> Result<Command, Misread> {
 /// Parses a line; a gait has priority over a word of the same name whose number is `YIELDING`
 /// or more.
 #[inline(never)]
-fn parse_among<const YIELDING: usize>(line: &[u8], robot: &Robot) -> Result<Command, Misread> {
+fn parse_among<const FIRST_YIELDING: usize>(
+    line: &[u8],
+    robot: &Robot,
+) -> Result<Command, Misread> {
     let mut words = Words(line);
     let word = Word::find(words.next()).filter(|word| {
         // Costs no instruction as long as no word yields.
-        YIELDING >= Word::ALL.len()
-            || (*word as usize) < YIELDING
+        FIRST_YIELDING >= Word::ALL.len()
+            || (*word as usize) < FIRST_YIELDING
             || matches!(
-                gait(line, robot),
+                parse_gait(line, robot),
                 Err(Misread::UnknownCommand | Misread::IncompleteName)
             )
     });
     let Some(word) = word else {
-        let (gait, cycles) = gait(line, robot)?;
+        let (gait, cycles) = parse_gait(line, robot)?;
         return Ok(Command::Order(Order::Gait(gait, cycles)));
     };
     let Arguments { servo, numbers } = match form_index(word) {
@@ -196,7 +199,7 @@ fn parse_boot(argument: &[u8], robot: &Robot) -> Result<Boot, Misread> {
     if Word::find(argument) == Some(Word::Rest) {
         return Ok(Boot::Rest);
     }
-    match gait(argument, robot) {
+    match parse_gait(argument, robot) {
         Ok((gait, 0)) => Ok(Boot::Gait(gait)),
         _ => Err(Misread::WrongArguments(Text::BootWants)),
     }
@@ -231,7 +234,7 @@ impl Arguments {
         }
         let mut wrong = None;
         for (index, number) in (0..form.count).zip(&mut arguments.numbers) {
-            let Some((magnitude, is_negative)) = number_of(words.next(), form.syntax) else {
+            let Some((magnitude, is_negative)) = parse_number(words.next(), form.syntax) else {
                 return usage_error;
             };
             *number = magnitude;
@@ -282,11 +285,11 @@ impl<'a> Words<'a> {
 /// Finds the gait of this name, and reads the number of cycles after it; 0 without one. Any blanks between
 /// words are accepted. If a gait's name is that of another gait and a number, the longer name counts.
 #[inline(never)]
-fn gait(line: &[u8], robot: &Robot) -> Result<(GaitId, u16), Misread> {
+fn parse_gait(line: &[u8], robot: &Robot) -> Result<(GaitId, u16), Misread> {
     let line = line.trim_ascii_start();
     let mut parsed = Err(Misread::UnknownCommand);
     for id in GaitId::all(robot.gait_count()) {
-        match compare(line, robot.name(id)) {
+        match match_gait_name(line, robot.name(id)) {
             Err(Misread::UnknownCommand) => {}
             Ok(0) => return Ok((id, 0)),
             other if parsed.is_err() => parsed = other.map(|cycles| (id, cycles)),
@@ -299,7 +302,7 @@ fn gait(line: &[u8], robot: &Robot) -> Result<(GaitId, u16), Misread> {
 /// Compares a line with a name, and reads the number after it; 0 without one. Stops at the
 /// first byte that differs: there may be many names, and a frame may be due.
 #[inline(never)]
-fn compare(line: &[u8], name: Name) -> Result<u16, Misread> {
+fn match_gait_name(line: &[u8], name: Name) -> Result<u16, Misread> {
     let mut rest = line;
     for byte in name {
         match rest {
@@ -317,7 +320,7 @@ fn compare(line: &[u8], name: Name) -> Result<u16, Misread> {
         _ => {}
     }
     let mut words = Words(rest);
-    let number = number_of(words.next(), Syntax::Whole);
+    let number = parse_number(words.next(), Syntax::Whole);
     match number {
         Some((cycles @ 1..=MAX_CYCLES, _)) if words.is_done() => Ok(cycles),
         _ => Err(Misread::WrongArguments(Text::CountWants)),
@@ -330,7 +333,7 @@ const DECIMALS: u8 = 2;
 /// Reads a word as a number without its sign; true if the sign is a minus. Returns 65535 for
 /// numbers of more than sixteen bits.
 #[inline(never)]
-fn number_of(word: &[u8], syntax: Syntax) -> Option<(u16, bool)> {
+fn parse_number(word: &[u8], syntax: Syntax) -> Option<(u16, bool)> {
     let (mut sign, mut digits) = (b'+', word);
     if syntax != Syntax::Whole
         && let [first @ (b'+' | b'-'), rest @ ..] = word
@@ -345,7 +348,7 @@ fn number_of(word: &[u8], syntax: Syntax) -> Option<(u16, bool)> {
     let mut decimals = None;
     for byte in digits {
         match byte {
-            b'0'..=b'9' => magnitude = Some(append(magnitude.unwrap_or(0), byte - b'0')),
+            b'0'..=b'9' => magnitude = Some(append_digit(magnitude.unwrap_or(0), byte - b'0')),
             b'.' if syntax != Syntax::Whole && magnitude.is_some() && decimals.is_none() => {
                 decimals = Some(0);
                 continue;
@@ -360,7 +363,7 @@ fn number_of(word: &[u8], syntax: Syntax) -> Option<(u16, bool)> {
     if syntax != Syntax::Whole {
         // Zeros in place of the missing decimals.
         for _ in 0..DECIMALS.checked_sub(decimals.unwrap_or(0))? {
-            magnitude = append(magnitude, 0);
+            magnitude = append_digit(magnitude, 0);
         }
     }
     Some((magnitude, is_negative))
@@ -368,7 +371,7 @@ fn number_of(word: &[u8], syntax: Syntax) -> Option<(u16, bool)> {
 
 /// Appends a digit to a number; saturates at 65535.
 #[inline(never)]
-fn append(number: u16, digit: u8) -> u16 {
+fn append_digit(number: u16, digit: u8) -> u16 {
     // 6553 followed by a digit may exceed sixteen bits.
     if number < 6553 {
         number * 10 + u16::from(digit)

@@ -195,7 +195,7 @@ impl Console {
             Some(Pending::PoseReport) => {
                 self.watch.is_due = false;
                 Text::WatchTime.print(out);
-                digits::number(out, control.motion().frames(), 0);
+                digits::print_number(out, control.motion().frames(), 0);
                 print::pose(out, control.motion());
             }
         }

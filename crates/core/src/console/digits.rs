@@ -23,12 +23,12 @@ pub fn angles(out: &mut impl Output, pose: &Pose, robot: &Robot) {
             out.byte(b',');
         }
         let angle = robot.neutral_of(servo).swept(*servo.of(&pose.0));
-        number(out, angle.centideg().into(), 2);
+        print_number(out, angle.centideg().into(), 2);
     }
 }
 
 /// Prints a number, the last `decimals` of its digits after a point.
-pub fn number(out: &mut impl Output, value: u32, decimals: usize) {
+pub fn print_number(out: &mut impl Output, value: u32, decimals: usize) {
     let mut rest = value;
     let mut has_begun = false;
     let mut place = DECADES.as_slice().len();
@@ -58,16 +58,16 @@ flash! {
 
 /// Prints a text and a number after it, with two decimals.
 #[inline(never)]
-pub fn field(out: &mut impl Output, text: Text, hundredths: u16) {
+pub fn print_hundredths(out: &mut impl Output, text: Text, hundredths: u16) {
     text.print(out);
-    number(out, hundredths.into(), 2)
+    print_number(out, hundredths.into(), 2)
 }
 
 /// Prints a text and a whole number after it.
 #[inline(never)]
-pub fn count(out: &mut impl Output, text: Text, count: u32) {
+pub fn print_count(out: &mut impl Output, text: Text, count: u32) {
     text.print(out);
-    number(out, count, 0)
+    print_number(out, count, 0)
 }
 
 /// Prints a number that may be negative, with `decimals` decimals.
@@ -75,7 +75,7 @@ pub fn signed(out: &mut impl Output, value: i32, decimals: usize) {
     if value < 0 {
         out.byte(b'-');
     }
-    number(out, value.unsigned_abs(), decimals)
+    print_number(out, value.unsigned_abs(), decimals)
 }
 
 /// Prints a margin with three decimals.
@@ -96,7 +96,7 @@ mod tests {
 
     fn printed(value: u32, decimals: usize) -> String {
         let mut text = String::new();
-        number(&mut text, value, decimals);
+        print_number(&mut text, value, decimals);
         text
     }
 

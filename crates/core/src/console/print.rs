@@ -96,10 +96,10 @@ fn gaits(out: &mut impl Output, first: GaitId, robot: &Robot) -> Option<GaitId> 
     let mut gait = first;
     loop {
         let name = robot.name(gait);
-        if name.length() >= LONGEST_NAMES - length {
+        if name.remaining() >= LONGEST_NAMES - length {
             return Some(gait);
         }
-        length += 1 + name.length();
+        length += 1 + name.remaining();
         out.byte(if gait == first { b' ' } else { b'|' });
         digits::ascii(out, name);
         match gait.next(robot.gait_count()) {
@@ -132,7 +132,7 @@ fn status(out: &mut impl Output, control: &Control) {
         return;
     }
     Text::StatusPhase.print(out);
-    digits::number(out, thousandths_from_phase(motion.phase()).into(), 3);
+    digits::print_number(out, thousandths_from_phase(motion.phase()).into(), 3);
     pose(out, motion)
 }
 
@@ -144,16 +144,16 @@ fn margin(out: &mut impl Output, motion: &Motion) {
     }
     Text::StatusMargin.print(out);
     digits::sine(out, Clearance::of(robot, motion.pose()).smallest());
-    digits::count(out, Text::StatusSpeed, motion.speed().into());
-    digits::count(out, Text::StatusFrames, motion.frames())
+    digits::print_count(out, Text::StatusSpeed, motion.speed().into());
+    digits::print_count(out, Text::StatusFrames, motion.frames())
 }
 
 /// Prints ` late=0 rx_lost=0 guard=clear fault=none reset=power resets=0 vcc=5.02 rail=5.91`;
 /// no voltage before the first reading, and the rail only where it is measured.
 #[inline(never)]
 fn health(out: &mut impl Output, control: &Control, counters: Counters) {
-    digits::count(out, Text::StatusLate, counters.late.into());
-    digits::count(out, Text::StatusRxLost, counters.rx_lost.into());
+    digits::print_count(out, Text::StatusLate, counters.late.into());
+    digits::print_count(out, Text::StatusRxLost, counters.rx_lost.into());
     Text::StatusGuard.print(out);
     match control.motion().hazard() {
         None => Text::GuardClear,
@@ -167,7 +167,7 @@ fn health(out: &mut impl Output, control: &Control, counters: Counters) {
         .print(out);
     Text::StatusReset.print(out);
     cause_word(control.cause()).print(out);
-    digits::count(out, Text::StatusResets, control.resets().into());
+    digits::print_count(out, Text::StatusResets, control.resets().into());
     let robot = control.motion().robot();
     let reading = control.safety().supply().reading();
     // Without a robot the reference voltage is unknown, so no voltage can be computed.
@@ -176,10 +176,10 @@ fn health(out: &mut impl Output, control: &Control, counters: Counters) {
     }
     let supplies = robot.supplies();
     let board = Voltage::of_board(reading, &supplies);
-    digits::field(out, Text::StatusVcc, board.hundredths());
+    digits::print_hundredths(out, Text::StatusVcc, board.hundredths());
     if supplies.rail_reference != 0 {
         let rail = Voltage::of_rail(reading, &supplies);
-        digits::field(out, Text::StatusRail, rail.hundredths());
+        digits::print_hundredths(out, Text::StatusRail, rail.hundredths());
     }
 }
 
@@ -193,7 +193,7 @@ fn settings(out: &mut impl Output, line: u8, control: &Control) -> bool {
             boot(out, control);
         }
         CAL_DEADMAN => {
-            digits::count(out, Text::CalDeadman, settings.deadman().into());
+            digits::print_count(out, Text::CalDeadman, settings.deadman().into());
         }
         CAL_END.. => {
             Text::Ok.print(out);
@@ -209,15 +209,15 @@ fn settings(out: &mut impl Output, line: u8, control: &Control) -> bool {
             out.byte(b'1' + line);
             Text::CalTrim.print(out);
             sweep(out, adjustment.trim);
-            digits::field(
+            digits::print_hundredths(
                 out,
                 Text::CalLimit,
                 neutral.swept(adjustment.min).centideg(),
             );
-            digits::field(out, Text::Blank, neutral.swept(adjustment.max).centideg());
+            digits::print_hundredths(out, Text::Blank, neutral.swept(adjustment.max).centideg());
             Text::CalDir.print(out);
             out.byte(if adjustment.is_direct() { b'+' } else { b'-' });
-            digits::field(out, Text::CalScale, adjustment.scale());
+            digits::print_hundredths(out, Text::CalScale, adjustment.scale());
         }
     }
     true
@@ -254,14 +254,14 @@ pub(super) fn notice(out: &mut impl Output, notice: Notice, control: &Control) {
             .print(out)
         }
         Notice::Supply => {
-            digits::field(out, Text::NoticeSupply, control.voltage().hundredths());
+            digits::print_hundredths(out, Text::NoticeSupply, control.voltage().hundredths());
             out.byte(b' ');
             out.byte(b'V');
             match control.safety().supply().level() {
                 Level::Good => Text::LevelGood.print(out),
                 Level::Slow => {
                     let pace = control.motion().robot().slow_pace();
-                    digits::count(out, Text::LevelSlow, pace.into())
+                    digits::print_count(out, Text::LevelSlow, pace.into())
                 }
                 Level::Stop => Text::LevelStop.print(out),
                 Level::Rest => Text::LevelRest.print(out),
@@ -305,7 +305,7 @@ pub(super) fn banner(out: &mut impl Output, robot: &Robot) {
         return Text::BannerEnd.print(out);
     }
     Text::BannerRobot.print(out);
-    digits::ascii(out, robot.label());
+    digits::ascii(out, robot.robot_name());
     out.byte(b' ');
     let hash = robot.hash();
     for digit in 0..8 {

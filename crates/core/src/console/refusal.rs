@@ -3,7 +3,7 @@
 //! The codes are part of the protocol and never change their meaning.
 
 use crate::console::command::Misread;
-use crate::console::digits::{field, number, signed, sine};
+use crate::console::digits::{print_hundredths, print_number, signed, sine};
 use crate::console::output::Output;
 use crate::console::text::Text;
 use crate::control::refusal::Refusal;
@@ -41,7 +41,9 @@ impl Refusal {
     /// The protocol's number of this refusal.
     const fn code(self) -> u8 {
         match self {
-            Self::Unsafe(Hazard::Travel(_)) | Self::Unfit(_) | Self::Elsewhere(_) => 3,
+            Self::Unsafe(Hazard::Travel(_))
+            | Self::TravelTooNarrow(_)
+            | Self::PoseOutsideTravel(_) => 3,
             Self::Unsafe(Hazard::Margin { .. }) => 4,
             Self::Unsafe(Hazard::Stroke { .. }) => 5,
             Self::Resting => 7,
@@ -56,13 +58,13 @@ impl Refusal {
         print_code(self.code(), out);
         match self {
             Self::Unsafe(hazard) => print_hazard(hazard, motion, out),
-            Self::Unfit(servo) => {
+            Self::TravelTooNarrow(servo) => {
                 print_servo(servo, out);
                 Text::Needed.print(out);
                 let needed = motion.robot().reach(servo);
                 print_range(servo, &needed, motion, out)
             }
-            Self::Elsewhere(servo) => {
+            Self::PoseOutsideTravel(servo) => {
                 print_servo(servo, out);
                 Text::NotHere.print(out)
             }
@@ -77,21 +79,21 @@ impl Refusal {
 
 /// Prints the protocol's number of an error and a blank.
 fn print_code(code: u8, out: &mut impl Output) {
-    number(out, code.into(), 0);
+    print_number(out, code.into(), 0);
     out.byte(b' ')
 }
 /// Prints `A2 reaches 311.41..131.41`.
 fn print_travel(servo: Servo, motion: &Motion, out: &mut impl Output) {
     print_servo(servo, out);
-    Text::Beyond.print(out);
+    Text::Reaches.print(out);
     let Calibration { min, max, .. } = *servo.of(motion.calibration());
     print_range(servo, &Reach { min, max }, motion, out)
 }
 
 fn print_range(servo: Servo, reach: &Reach, motion: &Motion, out: &mut impl Output) {
     let neutral = motion.robot().neutral_of(servo);
-    field(out, Text::Nothing, neutral.swept(reach.min).centideg());
-    field(out, Text::Dots, neutral.swept(reach.max).centideg())
+    print_hundredths(out, Text::Nothing, neutral.swept(reach.min).centideg());
+    print_hundredths(out, Text::Dots, neutral.swept(reach.max).centideg())
 }
 
 /// Prints the hazard of a pose: the travel, margin or stroke, with its limit.
@@ -128,7 +130,7 @@ pub fn print_hazard(hazard: Hazard, motion: &Motion, out: &mut impl Output) {
             } else {
                 Text::IsBelow.print(out);
             }
-            Text::Least.print(out);
+            Text::AtLeast.print(out);
             sine(out, limit)
         }
         Hazard::Stroke { side, length } => {

@@ -122,14 +122,14 @@ texts! {
     WatchWants = "watch wants a whole number, 0..10000";
     WatchRange = "watch must be 0..10000";
     PoseWants = "pose wants four angles in degrees, at most two decimals";
-    Beyond = " reaches ";
+    Reaches = " reaches ";
     Type2Head = "type-2 margin of the head";
     Type2Tail = "type-2 margin of the tail";
     Type1 = "type-1 margin of ";
     Leg = "leg margin of ";
     Is = " is ";
     IsBelow = " is below 0.1";
-    Least = ", at least ";
+    AtLeast = ", at least ";
     Left = "left";
     Right = "right";
     Slider = " slider is at ";
@@ -216,9 +216,9 @@ impl Text {
     /// Prints the message.
     #[inline(never)]
     pub fn print(self, out: &mut impl Output) {
-        let mut part = Part::of(self as u8);
+        let mut part = PackedString::of(self as u8);
         // The rest of the message, after the phrase that is being printed.
-        let mut rest = Part::NONE;
+        let mut rest = PackedString::NONE;
         loop {
             if part.left == 0 {
                 part = rest;
@@ -238,7 +238,7 @@ impl Text {
                 }
                 Some(phrase) => {
                     rest = part;
-                    part = Part::of(COUNT as u8 + phrase);
+                    part = PackedString::of(COUNT as u8 + phrase);
                 }
             }
         }
@@ -252,12 +252,12 @@ impl Text {
 
 /// The nibbles of a string that are still to be read.
 #[derive(Clone, Copy)]
-struct Part {
+struct PackedString {
     at: u16,
     left: u8,
 }
 
-impl Part {
+impl PackedString {
     const NONE: Self = Self { at: 0, left: 0 };
 
     /// All nibbles of a message or a phrase.
@@ -349,7 +349,7 @@ const fn pack() -> Packed {
                     rest = after;
                 }
                 _ => {
-                    packed.append(code(*first));
+                    packed.append(character_code(*first));
                     rest = after;
                 }
             }
@@ -381,7 +381,7 @@ const fn phrase_of(text: &[u8]) -> Option<(usize, &[u8])> {
 }
 
 /// The code of a character.
-const fn code(character: u8) -> usize {
+const fn character_code(character: u8) -> usize {
     let mut code = 0;
     while ALPHABET[code] != character {
         code += 1;

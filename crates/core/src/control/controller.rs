@@ -12,10 +12,12 @@ use crate::control::fault::Fault;
 use crate::control::order::{Accepted, Order};
 use crate::control::refusal::Refusal;
 use crate::control::safety::{Health, Notice, Reaction, Safety};
-use crate::control::supervisor::{self, BROWN_OUTS, Before, Event, FirstAction, Response, State};
+use crate::control::supervisor::{
+    self, BROWN_OUTS, Event, FirstAction, Response, ServosBefore, State,
+};
 use crate::control::supply::Voltage;
 use crate::guard::hazard::Hazard;
-use crate::memory::copies::{self, Outcome, RESTED};
+use crate::memory::copies::{self, Outcome, REST_POSE};
 use crate::memory::record::{Memory, Writing};
 use crate::memory::restart::{Cause, Restart, Stance};
 use crate::memory::settings::{Boot, Settings};
@@ -67,7 +69,7 @@ pub struct Control {
     /// The EEPROM operation that an order has started.
     job: Option<Job>,
     /// The record of the rest pose that is being written or invalidated.
-    rested: Option<Writing>,
+    rest_record: Option<Writing>,
     /// The reason why the guard holds the robot, until it is printed.
     hold_reason: Option<Hazard>,
 }
@@ -96,7 +98,7 @@ impl Control {
             contact: Contact::NONE,
             is_unattended: false,
             job: None,
-            rested: None,
+            rest_record: None,
             hold_reason: None,
         }
     }
@@ -110,7 +112,7 @@ impl Control {
         self.restarts = restart.count;
         if let Err(damage) = self.motion.take_robot(flash) {
             self.damage = Some(damage);
-            self.safety.fail(Fault::Robot);
+            self.safety.record_fault(Fault::Robot);
             return;
         }
         self.may_be_supply = restart.may_be_supply;
@@ -120,9 +122,9 @@ impl Control {
         }
         self.apply_calibration();
         let before = match &restart.before {
-            None => Before::Nothing,
-            Some(stance) if stance.is_resting => Before::Rested,
-            Some(_) => Before::Held,
+            None => ServosBefore::Nothing,
+            Some(stance) if stance.is_resting => ServosBefore::Rested,
+            Some(_) => ServosBefore::Held,
         };
         let brown_outs = restart.brown_outs.min(BROWN_OUTS - 1);
         self.brown_outs = match restart.may_be_supply {
@@ -133,7 +135,7 @@ impl Control {
             supervisor::first_action(restart.cause, self.brown_outs, before);
         if let Some(fault) = fault {
             self.safety.note_byte();
-            self.safety.fail(fault);
+            self.safety.record_fault(fault);
         }
         let rested = copies::last_rest_pose(self.motion.robot(), memory);
         let stance = restart.before.as_ref();
@@ -147,7 +149,7 @@ impl Control {
             _ => false,
         };
         if is_awake {
-            self.rested = Some(RESTED.invalidate());
+            self.rest_record = Some(REST_POSE.invalidate());
             return;
         }
         // A program that hung before its first frame has moved nothing since the rest.
@@ -157,8 +159,9 @@ impl Control {
         });
         self.motion.resume_rest(stance.or(at_rest.as_ref()));
         // The pose may not have reached the memory yet.
-        let is_saved = before == Before::Nothing || rested.as_ref() == Some(self.motion.pose());
-        self.rested = (!is_saved).then(|| RESTED.write());
+        let is_saved =
+            before == ServosBefore::Nothing || rested.as_ref() == Some(self.motion.pose());
+        self.rest_record = (!is_saved).then(|| REST_POSE.write());
     }
 
     /// Computes the pulses of the next frame. To be called 50 times a second.
@@ -173,7 +176,7 @@ impl Control {
             self.hold_reason = Some(hazard);
         }
         if self.routine.is_under_way() {
-            self.go_on(health.is_closed);
+            self.advance_routine(health.is_closed);
         } else if self.motion.has_ended() {
             self.safety.notify(Notice::Done);
         }
@@ -293,7 +296,7 @@ impl Control {
             Boot::Gait(gait) => {
                 self.start(gait, 0);
                 self.is_unattended = true;
-                self.rested = Some(RESTED.invalidate());
+                self.rest_record = Some(REST_POSE.invalidate());
             }
             Boot::Rest => self.rest(),
         }
@@ -373,7 +376,7 @@ impl Control {
     }
 
     fn go_to(&mut self, pose: &Pose) -> Result<(), Refusal> {
-        if let Some(servo) = pose.beyond(self.motion.calibration()) {
+        if let Some(servo) = pose.first_beyond_travel(self.motion.calibration()) {
             return Err(Refusal::Unsafe(Hazard::Travel(servo)));
         }
         self.check_allowed(Event::Move)?;
@@ -393,15 +396,15 @@ impl Control {
     /// the saved rest pose.
     fn note_motion(&mut self) {
         self.routine = Routine::NONE;
-        self.safety.clear();
+        self.safety.clear_fault();
         self.brown_outs = 0;
-        self.rested = Some(RESTED.invalidate());
+        self.rest_record = Some(REST_POSE.invalidate());
     }
 
     /// Ends the pulses and saves the pose for the next power-on.
     fn rest(&mut self) {
         self.routine = Routine::NONE;
         self.motion.rest();
-        self.rested = Some(RESTED.write());
+        self.rest_record = Some(REST_POSE.write());
     }
 }

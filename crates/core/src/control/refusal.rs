@@ -11,9 +11,9 @@ pub enum Refusal {
     /// The servos get no pulses.
     Resting,
     /// With these settings, this servo would not reach a sweep that the gaits need.
-    Unfit(Servo),
+    TravelTooNarrow(Servo),
     /// With these settings, this servo would have to leave its present pose or target.
-    Elsewhere(Servo),
+    PoseOutsideTravel(Servo),
     /// The supply is too low.
     Supply,
     /// The EEPROM does not keep the bytes that were written.

@@ -61,7 +61,7 @@ pub struct Safety {
     /// Milliseconds since the last command, up to 65535.
     silence: u16,
     /// Frames since power-on, up to [`BOOT_AFTER`]: then `boot` is done or cancelled.
-    boot: u8,
+    boot_timer: u8,
     /// The notices that wait to be printed, a bit for each [`Notice`].
     notices: u8,
 }
@@ -123,7 +123,7 @@ impl Safety {
             is_lit: false,
             late: 0,
             silence: 0,
-            boot: 0,
+            boot_timer: 0,
             notices: 0,
         }
     }
@@ -175,9 +175,9 @@ impl Safety {
     ) -> Reaction {
         let mut reaction = Reaction::None;
         self.silence = self.silence.saturating_add(FRAME_MS);
-        if self.boot < BOOT_AFTER {
-            self.boot += 1;
-            if self.boot == BOOT_AFTER
+        if self.boot_timer < BOOT_AFTER {
+            self.boot_timer += 1;
+            if self.boot_timer == BOOT_AFTER
                 && self.fault.is_none()
                 && self.response(Event::Boot, state) == Response::Obey
             {
@@ -212,11 +212,11 @@ impl Safety {
     fn handle(&mut self, event: Event, state: State) -> Reaction {
         match self.response(event, state) {
             Response::Freeze(fault) => {
-                self.fail(fault);
+                self.record_fault(fault);
                 Reaction::Freeze
             }
             Response::EndPulses(fault) => {
-                self.fail(fault);
+                self.record_fault(fault);
                 Reaction::EndPulses
             }
             _ => Reaction::None,
@@ -235,19 +235,19 @@ impl Safety {
 
     /// Records a fault and has it printed.
     #[inline(never)]
-    pub fn fail(&mut self, fault: Fault) {
+    pub fn record_fault(&mut self, fault: Fault) {
         self.fault = Some(fault);
         self.notify(Notice::Fault);
     }
 
     /// Clears the fault, since an order moves the robot.
-    pub fn clear(&mut self) {
+    pub fn clear_fault(&mut self) {
         self.fault = None;
     }
 
     /// Cancels `boot`: a received byte means that a computer is connected.
     pub fn note_byte(&mut self) {
-        self.boot = BOOT_AFTER;
+        self.boot_timer = BOOT_AFTER;
     }
 
     /// Notes that a command was received.

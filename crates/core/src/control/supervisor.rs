@@ -130,7 +130,7 @@ pub const BROWN_OUTS: u8 = 3;
 
 /// The servos' state before the reset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Before {
+pub enum ServosBefore {
     /// The state is unknown.
     Nothing,
     /// The servos got no pulses.
@@ -153,7 +153,7 @@ pub enum FirstAction {
     Rest,
 }
 
-impl Before {
+impl ServosBefore {
     /// All values, as the columns of the table.
     pub const ALL: [Self; 3] = [Self::Nothing, Self::Rested, Self::Held];
 }
@@ -161,7 +161,7 @@ impl Before {
 /// The table of resets: the first action and the fault that is shown, given the cause, the
 /// consecutive resets that a weak supply may have caused, and the servos' state before.
 #[rustfmt::skip]
-pub const fn first_action(cause: Cause, brown_outs: u8, before: Before) -> (FirstAction, Option<Fault>) {
+pub const fn first_action(cause: Cause, brown_outs: u8, before: ServosBefore) -> (FirstAction, Option<Fault>) {
     use FirstAction::{Hold, Rest, TakeOver, Wake};
     let too_many = brown_outs >= BROWN_OUTS;
     let ([nothing, rested, held], fault) = match cause {
@@ -173,9 +173,9 @@ pub const fn first_action(cause: Cause, brown_outs: u8, before: Before) -> (Firs
         Cause::External | Cause::BrownOut      => ([Wake,   Rest,   TakeOver], None),
     };
     let beginning = match before {
-        Before::Nothing => nothing,
-        Before::Rested => rested,
-        Before::Held => held,
+        ServosBefore::Nothing => nothing,
+        ServosBefore::Rested => rested,
+        ServosBefore::Held => held,
     };
     (beginning, fault)
 }

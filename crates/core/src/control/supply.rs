@@ -54,7 +54,7 @@ pub struct Supply {
     reading: Reading,
     level: Level,
     /// Consecutive frames that have measured another level.
-    frames: u8,
+    frames_at_other_level: u8,
     /// The level nearest to the present one in those frames.
     nearest: Level,
     /// Number of readings so far, up to [`TO_WORSE`].
@@ -64,7 +64,7 @@ pub struct Supply {
 /// Frames for which a worse level must last before it counts: a servo's start pulls the
 /// supply down for a few milliseconds. A reading stands for up to four frames, if the rail
 /// is measured too, so a single dip changes nothing.
-const TO_WORSE: u8 = 6;
+const FRAMES_TO_WORSE: u8 = 6;
 
 /// Frames for which a better level must last: a second, at a voltage above the threshold by
 /// [`HYSTERESIS`], mV.
@@ -142,7 +142,7 @@ impl Supply {
                 rail: 0,
             },
             level: Level::Good,
-            frames: 0,
+            frames_at_other_level: 0,
             nearest: Level::Good,
             readings: 0,
         }
@@ -160,12 +160,12 @@ impl Supply {
 
     /// True if the last reading is at the present level; otherwise there may be a dip.
     pub const fn is_steady(&self) -> bool {
-        self.frames == 0
+        self.frames_at_other_level == 0
     }
 
     /// The present level, once enough frames have measured it; until then it is assumed.
     pub const fn measured(&self) -> Option<Level> {
-        if self.readings < TO_WORSE {
+        if self.readings < FRAMES_TO_WORSE {
             None
         } else {
             Some(self.level)
@@ -188,12 +188,12 @@ impl Supply {
     /// so a single reading decides nothing.
     pub fn measure(&mut self, reading: Reading, supplies: &Supplies) -> bool {
         self.reading = reading;
-        if reading.reference > 0 && self.readings < TO_WORSE {
+        if reading.reference > 0 && self.readings < FRAMES_TO_WORSE {
             self.readings += 1;
         }
         let worse = supplies.level(reading, 0);
         let (level, frames) = if worse > self.level {
-            (worse, TO_WORSE)
+            (worse, FRAMES_TO_WORSE)
         } else if self.level > Level::Good {
             (supplies.level(reading, HYSTERESIS), TO_BETTER)
         } else {
@@ -201,19 +201,24 @@ impl Supply {
         };
         // A voltage between a threshold and the same threshold raised by the hysteresis changes nothing.
         if level == self.level || (frames == TO_BETTER && level > self.level) {
-            self.frames = 0;
+            self.frames_at_other_level = 0;
             return false;
         }
-        let goes_on = self.frames > 0 && (self.nearest > self.level) == (level > self.level);
+        let goes_on =
+            self.frames_at_other_level > 0 && (self.nearest > self.level) == (level > self.level);
         self.nearest = match goes_on {
             false => level,
             true if level > self.level => level.min(self.nearest),
             true => level.max(self.nearest),
         };
-        self.frames = if goes_on { self.frames + 1 } else { 1 };
-        let changed = self.frames >= frames;
+        self.frames_at_other_level = if goes_on {
+            self.frames_at_other_level + 1
+        } else {
+            1
+        };
+        let changed = self.frames_at_other_level >= frames;
         if changed {
-            self.frames = 0;
+            self.frames_at_other_level = 0;
             self.level = self.nearest;
         }
         changed

@@ -42,7 +42,7 @@ impl<'a> Robot<'a> {
     /// Returns the reason why the section is not a usable robot.
     #[inline(never)]
     pub fn open(flash: Region<'a>) -> Result<Self, Damage> {
-        let length = section::find(flash)?;
+        let length = section::check(flash)?;
         let robot = Self::at(flash.first(length));
         match robot.is_harmless() {
             true => Ok(robot),
@@ -60,17 +60,17 @@ impl<'a> Robot<'a> {
 
     /// Reads the two bytes at an offset.
     #[inline(never)]
-    fn word(&self, offset: u16) -> u16 {
+    fn read_word(&self, offset: u16) -> u16 {
         self.section().read(offset)
     }
 
     /// True if all pins are free ones of the board, each used once, and the rail's, if any, can measure.
     #[inline(always)]
     fn has_pins(&self) -> bool {
-        let rail = self.word(offset!(rail)) as u8;
+        let rail = self.read_word(offset!(rail)) as u8;
         let mut servo = offset!(pins);
         while servo < offset!(pins) + 4 {
-            let pin = self.word(servo) as u8;
+            let pin = self.read_word(servo) as u8;
             if !is_free(pin) || self.count_users(pin) != 1 {
                 return false;
             }
@@ -82,10 +82,10 @@ impl<'a> Robot<'a> {
     /// The number of uses of a pin, by servos and the rail.
     #[inline(never)]
     fn count_users(&self, pin: u8) -> u8 {
-        let mut users = u8::from(self.word(offset!(rail)) as u8 == pin);
+        let mut users = u8::from(self.read_word(offset!(rail)) as u8 == pin);
         let mut servo = offset!(pins);
         while servo < offset!(pins) + 4 {
-            users += u8::from(self.word(servo) as u8 == pin);
+            users += u8::from(self.read_word(servo) as u8 == pin);
             servo += 1;
         }
         users
@@ -94,7 +94,7 @@ impl<'a> Robot<'a> {
     /// The input of a record of the kind [`Step::UNTIL`]; [`Input::NONE`] if its pin is not free,
     /// since its pull-up would drive a servo.
     pub(crate) fn input(&self, step: &Step) -> Input {
-        let input = Input::of(step);
+        let input = Input::of_step(step);
         match is_free(input.pin()) && self.count_users(input.pin()) == 0 {
             true => input,
             false => Input::NONE,

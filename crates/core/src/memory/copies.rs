@@ -23,7 +23,7 @@ const fn copy(number: usize) -> Address {
 }
 
 /// The address of the rest pose.
-pub const RESTED: Address = Address(128);
+pub const REST_POSE: Address = Address(128);
 
 /// The state of the saved settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,17 +56,17 @@ impl Copies {
         let states = [copy(0).check(memory), copy(1).check(memory)];
         let turn = |copy: usize| self::copy(copy).byte(memory, TURN as u16);
         let latest = match states {
-            [RecordState::Whole, RecordState::Whole] => {
+            [RecordState::Valid, RecordState::Valid] => {
                 usize::from(turn(1).wrapping_sub(turn(0)) < 0x80)
             }
-            [RecordState::Whole, _] => 0,
+            [RecordState::Valid, _] => 0,
             _ => 1,
         };
         Self { states, latest }
     }
 
-    fn none_is_whole(&self) -> bool {
-        self.states[self.latest & 1] != RecordState::Whole
+    fn has_no_valid_copy(&self) -> bool {
+        self.states[self.latest & 1] != RecordState::Valid
     }
 
     fn address(&self) -> Address {
@@ -78,14 +78,14 @@ impl Copies {
 #[inline(never)]
 pub fn read<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> Outcome {
     let copies = Copies::check(memory);
-    if copies.none_is_whole() {
+    if copies.has_no_valid_copy() {
         return match copies.states {
             [RecordState::Blank, RecordState::Blank] => Outcome::Blank,
             _ => Outcome::Damaged,
         };
     }
     copies.address().fetch(memory, settings.bytes_mut());
-    if !settings.are_for(robot) {
+    if !settings.belong_to(robot) {
         Outcome::Foreign
     } else if copies.states.contains(&RecordState::Damaged) {
         Outcome::OneCopy
@@ -99,7 +99,7 @@ pub fn read<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> Ou
 pub fn load<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> Outcome {
     let mut outcome = read(robot, memory, settings);
     if matches!(outcome, Outcome::Latest | Outcome::OneCopy) {
-        if settings.unfit(robot).is_none() {
+        if settings.first_unfit_servo(robot).is_none() {
             return outcome;
         }
         outcome = Outcome::Unfit;
@@ -112,7 +112,7 @@ pub fn load<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> Ou
 /// the same settings.
 pub fn save<M: Memory>(settings: &mut Settings, memory: &M) -> Option<Writing> {
     let copies = Copies::check(memory);
-    if copies.none_is_whole() {
+    if copies.has_no_valid_copy() {
         settings.set_turn(1);
         return Some(copy(0).write());
     }
@@ -130,9 +130,9 @@ pub fn save<M: Memory>(settings: &mut Settings, memory: &M) -> Option<Writing> {
 /// The pose of the last rest, if the robot has not moved since.
 pub fn last_rest_pose<M: Memory>(robot: &Robot, memory: &M) -> Option<Pose> {
     let mut bytes = [0; CONTENT];
-    RESTED.fetch(memory, &mut bytes);
+    REST_POSE.fetch(memory, &mut bytes);
     let saved = Settings::from_bytes(bytes);
-    (RESTED.check(memory) == RecordState::Whole && saved.are_for(robot)).then(|| saved.pose())
+    (REST_POSE.check(memory) == RecordState::Valid && saved.belong_to(robot)).then(|| saved.pose())
 }
 
 #[cfg(test)]

@@ -83,7 +83,7 @@ pub fn begin<C: Cells>(cells: &C, reported: Option<Cause>) -> Restart {
     if survived && cause != Cause::Power {
         restart.count = count.saturating_add(1);
         if cause != Cause::External {
-            restart.rate = Rate::at(cells.get(RATE));
+            restart.rate = Rate::from_number(cells.get(RATE));
         }
         take(cells, &mut restart);
     } else {
@@ -105,7 +105,7 @@ pub fn begin<C: Cells>(cells: &C, reported: Option<Cause>) -> Restart {
 pub fn store_stance<C: Cells>(cells: &C, stance: &Stance, brown_outs: u8) {
     let turn = !cells.get(VALID_COPY) & 1;
     let mut copy = Copy::new(cells, turn);
-    copy.put(stance.awake | if stance.is_resting { RESTING } else { 0 });
+    copy.put(stance.frames_awake | if stance.is_resting { RESTING } else { 0 });
     copy.put(brown_outs);
     for sweep in &stance.pose.0 {
         copy.put_word(sweep.0 as u16);
@@ -135,7 +135,7 @@ fn take<C: Cells>(cells: &C, restart: &mut Restart) {
     let brown_outs = copy.take();
     let mut stance = Stance {
         is_resting: state & RESTING != 0,
-        awake: state & !RESTING,
+        frames_awake: state & !RESTING,
         ..Stance::RESTING
     };
     for sweep in &mut stance.pose.0 {

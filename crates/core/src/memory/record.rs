@@ -35,7 +35,7 @@ pub type Content = [u8; CONTENT];
 pub const LENGTH: u16 = CONTENT as u16 + 3;
 
 /// The first byte of a valid record.
-pub const WHOLE: u8 = 0xa5;
+pub const VALID_MARK: u8 = 0xa5;
 
 /// The first byte of an invalid record; also the value of an erased byte.
 pub const ERASED: u8 = 0xff;
@@ -52,7 +52,7 @@ pub enum RecordState {
     /// A record that was not written to its end, or has changed since.
     Damaged,
     /// A valid record.
-    Whole,
+    Valid,
 }
 
 /// The result of a step of writing a record.
@@ -97,8 +97,8 @@ impl Address {
         self.fetch(memory, &mut content);
         let crc = [1, 2].map(|n| memory.read(self.0 + CONTENT as u16 + n));
         let mark = memory.read(self.0);
-        if mark == WHOLE && crc == Checksum::of(&content).0.to_le_bytes() {
-            RecordState::Whole
+        if mark == VALID_MARK && crc == Checksum::of(&content).0.to_le_bytes() {
+            RecordState::Valid
         } else if mark == ERASED && content.iter().chain(&crc).all(|byte| *byte == ERASED) {
             RecordState::Blank
         } else {
@@ -152,7 +152,7 @@ impl Writing {
         let (offset, byte) = if step == 0 {
             (0, ERASED)
         } else if step == LENGTH {
-            (0, WHOLE)
+            (0, VALID_MARK)
         } else {
             let crc = || Checksum::of(content).0.to_le_bytes()[usize::from(self.step & 1 ^ 1)];
             let byte = content.get(usize::from(self.step - 1));
@@ -232,7 +232,7 @@ mod tests {
                 prop_assert_eq!(write(&mut eeprom, &content), Progress::Done);
                 eeprom.slowness = 0;
                 let eeprom = Eeprom::with(*eeprom.bytes());
-                prop_assert_eq!(read(&eeprom), (RecordState::Whole, content));
+                prop_assert_eq!(read(&eeprom), (RecordState::Valid, content));
             }
             let beside = |address: &usize| !(64..64 + usize::from(LENGTH)).contains(address);
             prop_assert!((0..1024).filter(beside).all(|address| eeprom.bytes()[address] == ERASED));
@@ -261,7 +261,10 @@ mod tests {
         write(&mut eeprom, &content);
         eeprom.log.clear();
         write(&mut eeprom, &content);
-        assert_eq!(eeprom.log, [(64, WHOLE, ERASED), (64, ERASED, WHOLE)]);
+        assert_eq!(
+            eeprom.log,
+            [(64, VALID_MARK, ERASED), (64, ERASED, VALID_MARK)]
+        );
         eeprom.log.clear();
         content[5] = 8;
         write(&mut eeprom, &content);

@@ -34,7 +34,7 @@ pub struct Stance {
     pub is_resting: bool,
     /// Frames since pulses began, up to [`crate::motion::AWAKE`]; servos wake one
     /// after the other.
-    pub awake: u8,
+    pub frames_awake: u8,
     /// The pose that the servos hold or last held.
     pub pose: Pose,
     /// The pulses of the last frame, including those of servos that sleep. They may belong to a calibration
@@ -66,7 +66,7 @@ impl Stance {
     /// Servos that have never had pulses.
     pub const RESTING: Self = Self {
         is_resting: true,
-        awake: 0,
+        frames_awake: 0,
         pose: Pose::NEUTRAL,
         sent: Pulses([Width(0); 4]),
     };

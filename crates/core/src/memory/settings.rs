@@ -114,7 +114,7 @@ impl Settings {
     }
 
     /// True if the settings have this format and belong to the servos of this robot.
-    pub fn are_for(&self, robot: &Robot) -> bool {
+    pub fn belong_to(&self, robot: &Robot) -> bool {
         let hash = robot.servo_hash();
         self.bytes[0] == FORMAT
             && self.get(HASH) == hash as u16
@@ -122,7 +122,7 @@ impl Settings {
     }
 
     /// The number of this save, modulo 256.
-    pub const fn turn(&self) -> u8 {
+    pub const fn save_number(&self) -> u8 {
         self.bytes[TURN]
     }
 
@@ -194,7 +194,7 @@ impl Settings {
 
     /// The first servo whose travel ends short of the neutral angle or of a gait.
     #[inline(never)]
-    pub fn unfit(&self, robot: &Robot) -> Option<Servo> {
+    pub fn first_unfit_servo(&self, robot: &Robot) -> Option<Servo> {
         Servo::all().find(|servo| {
             let calibration = self.calibration(*servo, robot);
             !robot.reach(*servo).is_within(&calibration)

@@ -60,7 +60,7 @@ const WAKE_INTERVAL_FRAMES: u8 = 5;
 const FULL_PERCENT: u8 = 100;
 
 /// Frames from the first pulse until all four are awake and motion may begin.
-pub const AWAKE: u8 = 4 * WAKE_INTERVAL_FRAMES;
+pub const AWAKE_FRAMES: u8 = 4 * WAKE_INTERVAL_FRAMES;
 
 /// The motion of a robot: its state, its target and the pulses of the last frame.
 #[derive(Clone, Debug)]
@@ -192,7 +192,7 @@ impl Motion {
     #[inline(never)]
     pub fn start_gait(&mut self, id: GaitId, cycles: u16) {
         if self.activity() != Activity::Gait(id) {
-            self.head_for(Target::Gait(id));
+            self.set_target(Target::Gait(id));
         } else if let Some(Target::End) = self.next {
             self.next = None;
         }
@@ -225,7 +225,7 @@ impl Motion {
         match self.hazard_of(pose) {
             Some(hazard) => Err(hazard),
             None => {
-                self.head_for(Target::Pose(*pose));
+                self.set_target(Target::Pose(*pose));
                 Ok(())
             }
         }
@@ -261,11 +261,11 @@ impl Motion {
         if matches!(self.state, State::Resting) {
             return pulses;
         }
-        let awake_before = self.stance.awake;
-        if awake_before < AWAKE {
-            self.stance.awake = awake_before + 1;
+        let awake_before = self.stance.frames_awake;
+        if awake_before < AWAKE_FRAMES {
+            self.stance.frames_awake = awake_before + 1;
         } else if !self.is_settling {
-            self.proceed();
+            self.advance_motion();
         }
         // While they settle, pulses change by at most the slew limit of a frame.
         let per_frame = self.robot.slew().per_frame;
@@ -275,7 +275,7 @@ impl Motion {
         for (index, pulse) in pulses.0.iter_mut().enumerate() {
             let servo = &self.calibration[index];
             let sent = &mut self.stance.sent.0[index];
-            let is_asleep = self.stance.awake < wakes_at;
+            let is_asleep = self.stance.frames_awake < wakes_at;
             let mut width = servo.width(self.stance.pose.0[index]);
             if self.is_settling && sent.0 != 0 {
                 // A servo's first pulse repeats its last one, also that of the previous
@@ -320,17 +320,17 @@ impl Motion {
 
     /// The first limit that a pose breaks.
     fn hazard_of(&self, pose: &Pose) -> Option<Hazard> {
-        match pose.beyond(&self.calibration) {
+        match pose.first_beyond_travel(&self.calibration) {
             Some(servo) => Some(Hazard::Travel(servo)),
             None => clearance::hazard(&self.robot, pose),
         }
     }
 
-    fn head_for(&mut self, target: Target) {
+    fn set_target(&mut self, target: Target) {
         if matches!(self.state, State::Resting) {
             self.state = State::Holding { is_ordered: false };
             self.stance.is_resting = false;
-            self.stance.awake = 0;
+            self.stance.frames_awake = 0;
             // The servos are still where their last pulses turned them, if they had any; settings that have
             // changed since must not make them jump.
             self.is_settling = true;
@@ -346,7 +346,7 @@ impl Motion {
 
     // Not inlined: in `tick` its registers would cost more than the call.
     #[inline(never)]
-    fn proceed(&mut self) {
+    fn advance_motion(&mut self) {
         self.count();
         self.start_next_target();
         let is_braking = self.next.is_some();

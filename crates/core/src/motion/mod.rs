@@ -9,5 +9,5 @@ mod pace;
 pub mod point_to_point;
 mod state;
 
-pub use frames::{AWAKE, Motion};
+pub use frames::{AWAKE_FRAMES, Motion};
 pub use state::Activity;

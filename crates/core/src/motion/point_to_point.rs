@@ -29,8 +29,8 @@ pub struct PointToPoint {
 impl PointToPoint {
     /// A move between two poses.
     pub fn new(from: &Pose, to: &Pose, slew: Slew) -> Self {
-        let distance = from.farthest(to);
-        let frames = (mul_unsigned(distance, slew.frames_per_way) >> 16) as u16 + 1;
+        let distance = from.largest_turn_to(to);
+        let frames = (mul_unsigned(distance, slew.frames_per_distance) >> 16) as u16 + 1;
         Self {
             from: *from,
             to: *to,
@@ -195,7 +195,7 @@ mod tests {
             for pace in paces {
                 path.advance(pace);
                 let here = path.pose();
-                prop_assert!(last.farthest(&here) <= slew.per_frame);
+                prop_assert!(last.largest_turn_to(&here) <= slew.per_frame);
                 for n in 0..4 {
                     let (low, high) = (from[n].min(to[n]), from[n].max(to[n]));
                     let within = i32::from(low) - 1..=i32::from(high) + 1;

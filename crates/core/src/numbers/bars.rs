@@ -31,7 +31,7 @@ lizard_avr::plain! {
         pub(crate) area_shift: u16,
         pub(crate) scale: Scale,
         /// Unused: it pads the fields above to a multiple of four bytes.
-        pub(crate) rest: u16,
+        pub(crate) padding: u16,
     }
 }
 
@@ -48,7 +48,7 @@ impl Bars {
         per_left: 0,
         per_right: 0,
         scale: Scale { bits: 0 },
-        rest: 0,
+        padding: 0,
     };
 
     /// A loop with these bars, in steps: the distance between the shafts, the left and the right crank, whose sum is
@@ -81,7 +81,7 @@ impl Bars {
             per_left: ((1 << 27) / a as i32) as i16,
             per_right: ((1 << 27) / b as i32) as i16,
             scale,
-            rest: 0,
+            padding: 0,
         }
     }
 

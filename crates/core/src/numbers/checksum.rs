@@ -11,11 +11,11 @@ pub struct Checksum(pub u16);
 
 impl Checksum {
     /// The checksum of no bytes.
-    pub const NOTHING: Self = Self(u16::MAX);
+    pub const EMPTY: Self = Self(u16::MAX);
 
     /// The checksum with one more byte.
     #[cfg_attr(target_arch = "avr", inline(never))] // once in flash
-    pub const fn and(self, byte: u8) -> Self {
+    pub const fn with_byte(self, byte: u8) -> Self {
         // Eight bit steps at once: the byte is XORed with the high half of the sum, and the bits shifted out are fed
         // back at the powers of the polynomial.
         let out = (self.0 >> 8) as u8 ^ byte;
@@ -26,9 +26,9 @@ impl Checksum {
     /// Computes the checksum of `bytes`.
     #[inline(never)]
     pub fn of(bytes: &[u8]) -> Self {
-        let mut sum = Self::NOTHING;
+        let mut sum = Self::EMPTY;
         for byte in bytes {
-            sum = sum.and(*byte);
+            sum = sum.with_byte(*byte);
         }
         sum
     }

@@ -76,9 +76,9 @@ impl Coupling {
             left,
             right,
             reach_sq: reach_sq(left, right),
-            least_sq: least_sq(left, right),
+            least_sq: folded_sq(left, right),
             reach_zeros: reach_sq(left, right).leading_zeros() as u16,
-            least_zeros: least_sq(left, right).leading_zeros() as u16,
+            least_zeros: folded_sq(left, right).leading_zeros() as u16,
         }
     }
 
@@ -151,11 +151,11 @@ impl<'a> Couplers<'a> {
             (_, Some(folded)) if tips_sq < 2 * least_sq => {
                 Curve::of_octave(folded, lengths.least_zeros).at(tips_sq.checked_sub(least_sq)?)?
             }
-            _ => Curve::of_octave(tables.rise?, lengths.reach_zeros).falling(tips_sq)?,
+            _ => Curve::of_octave(tables.rise?, lengths.reach_zeros).at_rounded_up(tips_sq)?,
         };
         let skew = match tables.skew {
             Some(skew) => {
-                let size = Curve::of_octave(skew, lengths.reach_zeros).falling(tips_sq)?;
+                let size = Curve::of_octave(skew, lengths.reach_zeros).at_rounded_up(tips_sq)?;
                 if lengths.left < lengths.right {
                     size.wrapping_neg()
                 } else {
@@ -175,7 +175,7 @@ const fn is_near_stretched(reach_sq: u32, tips_sq: u32) -> bool {
 
 /// The rise over `s` for couplers of these lengths; made by a host.
 pub fn rise(left: i16, right: i16) -> Table {
-    let (reach_sq, least_sq) = (reach_sq(left, right), least_sq(left, right));
+    let (reach_sq, least_sq) = (reach_sq(left, right), folded_sq(left, right));
     let peak_sq = peak_sq(left, right).into();
     // Rounded down, because a straight line between two points of this curve lies above it.
     core::array::from_fn(|index| {
@@ -186,7 +186,7 @@ pub fn rise(left: i16, right: i16) -> Table {
 
 /// The rise over `R - s`; made by a host.
 pub fn stretched(left: i16, right: i16) -> Table {
-    let (reach_sq, least_sq) = (reach_sq(left, right), least_sq(left, right));
+    let (reach_sq, least_sq) = (reach_sq(left, right), folded_sq(left, right));
     core::array::from_fn(|index| {
         let short = argument(reach_sq / 4, index);
         let tips_sq = u64::from(reach_sq).saturating_sub(short);
@@ -196,7 +196,7 @@ pub fn stretched(left: i16, right: i16) -> Table {
 
 /// The rise over `s - N`; made by a host.
 pub fn folded(left: i16, right: i16) -> Table {
-    let (reach_sq, least_sq) = (reach_sq(left, right), least_sq(left, right));
+    let (reach_sq, least_sq) = (reach_sq(left, right), folded_sq(left, right));
     core::array::from_fn(|index| {
         let tips_sq = u64::from(least_sq) + argument(least_sq, index);
         rise_q10(reach_sq, least_sq, tips_sq, 1)
@@ -236,14 +236,14 @@ const fn reach_sq(left: i16, right: i16) -> u32 {
 }
 
 /// Computes `N` in the steps of `s`.
-const fn least_sq(left: i16, right: i16) -> u32 {
+const fn folded_sq(left: i16, right: i16) -> u32 {
     let difference = left.abs_diff(right) as u32;
     difference * difference / 4
 }
 
 /// The value of `s` at which the rise is largest.
 fn peak_sq(left: i16, right: i16) -> u32 {
-    let (reach_sq, least_sq) = (reach_sq(left, right) as u64, least_sq(left, right) as u64);
+    let (reach_sq, least_sq) = (reach_sq(left, right) as u64, folded_sq(left, right) as u64);
     (2 * reach_sq * least_sq / (reach_sq + least_sq)) as u32
 }
 

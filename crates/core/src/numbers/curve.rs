@@ -43,7 +43,7 @@ impl<'a> Curve<'a> {
 
     /// The value of a function that never rises, rounded up; `None` below the table's first
     /// octave, where the argument is less than 1/1024 of the largest one's octave.
-    pub fn falling(&self, argument: u32) -> Option<i16> {
+    pub fn at_rounded_up(&self, argument: u32) -> Option<i16> {
         self.read(argument, 0)
     }
 

@@ -37,7 +37,7 @@ impl<'a> Name<'a> {
     }
 
     /// The number of bytes that are still to be read.
-    pub const fn length(&self) -> u8 {
+    pub const fn remaining(&self) -> u8 {
         self.left
     }
 }
@@ -139,7 +139,7 @@ impl Input {
     }
 
     /// The input of a record of the kind [`Step::UNTIL`].
-    pub const fn of(step: &Step) -> Self {
+    pub const fn of_step(step: &Step) -> Self {
         Self(step.gait)
     }
 
@@ -235,7 +235,7 @@ mod tests {
             assert_eq!(id.index(), index);
             assert_eq!(id.next(robot.gait_count()), ids.get(index + 1).copied());
             let name = robot.name(*id);
-            assert_eq!(usize::from(name.length()), GAITS[index].len());
+            assert_eq!(usize::from(name.remaining()), GAITS[index].len());
             assert!(name.eq(GAITS[index].bytes()));
         }
     }

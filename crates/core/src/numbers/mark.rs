@@ -18,7 +18,7 @@ use crate::numbers::section::{FORMAT, MAGIC};
 
 /// The mark's address in flash: after the 26 vectors of an ATmega328P, 4 bytes each (data sheet,
 /// table 12-6).
-pub const AT: usize = 26 * 4;
+pub const ADDRESS: usize = 26 * 4;
 
 /// The length of the mark, bytes.
 pub const LENGTH: usize = 10;
@@ -34,7 +34,7 @@ pub struct Mark {
 
 impl Mark {
     /// The mark of this firmware.
-    pub const HERE: Self = Self {
+    pub const OWN: Self = Self {
         format: FORMAT,
         version: [
             number(env!("CARGO_PKG_VERSION_MAJOR")),
@@ -53,7 +53,7 @@ impl Mark {
 
     /// Reads the mark of a flash that begins with this project's firmware; `None` for any other.
     pub fn find(flash: &[u8]) -> Option<Self> {
-        let bytes = flash.get(AT..AT + LENGTH)?;
+        let bytes = flash.get(ADDRESS..ADDRESS + LENGTH)?;
         let (magic, rest) = bytes.split_first_chunk()?;
         let &[low, high, major, minor, patch, 0] = rest else {
             return None;
@@ -80,7 +80,7 @@ mod tests {
 
     #[test]
     fn the_version_is_the_packages() {
-        let [major, minor, patch] = Mark::HERE.version;
+        let [major, minor, patch] = Mark::OWN.version;
         let version = format!("{major}.{minor}.{patch}");
         assert_eq!(version, env!("CARGO_PKG_VERSION"));
     }
@@ -88,18 +88,14 @@ mod tests {
     #[test]
     fn any_byte_of_another_value_is_another_mark_or_none() {
         let mut flash = [0xff; 128];
-        flash[AT..AT + LENGTH].copy_from_slice(&Mark::HERE.bytes());
-        for offset in AT..AT + LENGTH {
+        flash[ADDRESS..ADDRESS + LENGTH].copy_from_slice(&Mark::OWN.bytes());
+        for offset in ADDRESS..ADDRESS + LENGTH {
             for bit in 0..8 {
                 let mut flash = flash;
                 flash[offset] ^= 1 << bit;
-                assert_ne!(
-                    Mark::find(&flash),
-                    Some(Mark::HERE),
-                    "bit {bit} of {offset}"
-                );
+                assert_ne!(Mark::find(&flash), Some(Mark::OWN), "bit {bit} of {offset}");
             }
         }
-        assert_eq!(Mark::find(&flash[..AT + LENGTH - 1]), None);
+        assert_eq!(Mark::find(&flash[..ADDRESS + LENGTH - 1]), None);
     }
 }

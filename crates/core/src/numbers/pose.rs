@@ -40,7 +40,7 @@ impl Pose {
     }
 
     /// The first servo whose travel does not reach its sweep.
-    pub fn beyond(&self, calibration: &[Calibration; 4]) -> Option<Servo> {
+    pub fn first_beyond_travel(&self, calibration: &[Calibration; 4]) -> Option<Servo> {
         for (index, servo) in calibration.iter().enumerate() {
             if !servo.reaches(self.0[index]) {
                 return Some(Servo::at(index));
@@ -59,7 +59,7 @@ impl Pose {
     }
 
     /// The largest turn of any servo between this pose and `other`, in 1/65536 turn.
-    pub fn farthest(&self, other: &Self) -> u16 {
+    pub fn largest_turn_to(&self, other: &Self) -> u16 {
         let mut largest = 0;
         for (from, to) in self.0.iter().zip(&other.0) {
             largest = largest.max(from.0.abs_diff(to.0));
@@ -87,7 +87,7 @@ mod tests {
         fn a_pose_within_the_travel_comes_back_from_its_angles((robot, pose) in posed()) {
             let angles = pose.angles(&robot.neutral());
             prop_assert_eq!(Pose::at(&angles, &robot.neutral()), pose);
-            prop_assert_eq!(pose.beyond(&robot.calibration()), None);
+            prop_assert_eq!(pose.first_beyond_travel(&robot.calibration()), None);
         }
 
         #[test]
@@ -101,7 +101,7 @@ mod tests {
                 }
             }
             let first = beyond.iter().position(|beyond| *beyond).map(Servo::at);
-            prop_assert_eq!(pose.beyond(&robot.calibration()), first);
+            prop_assert_eq!(pose.first_beyond_travel(&robot.calibration()), first);
         }
 
         #[test]
@@ -120,8 +120,8 @@ mod tests {
         ) {
             let ways = (0..4).map(|index| from[index].abs_diff(to[index]));
             let [from, to] = [from, to].map(|sweeps| Pose(sweeps.map(Sweep)));
-            prop_assert_eq!(Some(from.farthest(&to)), ways.max());
-            prop_assert_eq!(from.farthest(&to), to.farthest(&from));
+            prop_assert_eq!(Some(from.largest_turn_to(&to)), ways.max());
+            prop_assert_eq!(from.largest_turn_to(&to), to.largest_turn_to(&from));
         }
     }
 }

@@ -30,7 +30,7 @@ impl Rate {
     }
 
     /// The rate with this number, modulo 4.
-    pub const fn at(number: u8) -> Self {
+    pub const fn from_number(number: u8) -> Self {
         match number & 3 {
             0 => Self::Fastest,
             1 => Self::Half,
@@ -41,6 +41,6 @@ impl Rate {
 
     /// The next slower rate; after the slowest, the fastest.
     pub const fn next(self) -> Self {
-        Self::at(self as u8 + 1)
+        Self::from_number(self as u8 + 1)
     }
 }

@@ -28,13 +28,13 @@ use crate::numbers::units::Angle;
 #[derive(Clone, Copy)]
 pub struct Robot<'a> {
     section: Region<'a>,
-    is_there: bool,
+    is_present: bool,
 }
 
 // The numbers are omitted: they are the same in every state of a program.
 impl fmt::Debug for Robot<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(if self.is_there { "Robot" } else { "no robot" })
+        f.write_str(if self.is_present { "Robot" } else { "no robot" })
     }
 }
 
@@ -42,7 +42,7 @@ impl<'a> Robot<'a> {
     /// No robot: it has no gait and may not be moved.
     pub const NONE: Self = Self {
         section: Region::EMPTY,
-        is_there: false,
+        is_present: false,
     };
 
     /// The robot in `flash`, which must be exactly a valid section: [`Robot::open`] checks it.
@@ -50,20 +50,20 @@ impl<'a> Robot<'a> {
     pub(crate) const fn at(flash: Region<'a>) -> Self {
         Self {
             section: flash,
-            is_there: true,
+            is_present: true,
         }
     }
 
     /// The robot of a newly made section whose numbers are not checked yet; for the code that checks them.
     #[cfg(any(test, feature = "host"))]
     pub fn unchecked(flash: Region<'a>) -> Option<Self> {
-        let length = section::find(flash).ok()?;
+        let length = section::check(flash).ok()?;
         Some(Self::at(flash.first(length)))
     }
 
     /// True if there is no robot.
     pub const fn is_none(&self) -> bool {
-        !self.is_there
+        !self.is_present
     }
 
     /// The flash region that is exactly its section.
@@ -78,7 +78,7 @@ impl<'a> Robot<'a> {
     }
 
     /// The robot's name, byte by byte.
-    pub fn label(&self) -> impl Iterator<Item = u8> + use<'a> {
+    pub fn robot_name(&self) -> impl Iterator<Item = u8> + use<'a> {
         let section = self.section;
         let name = offset_of!(Header, name) as u16;
         (name..name + section::MAX_NAME_BYTES as u16)
@@ -184,7 +184,7 @@ impl<'a> Robot<'a> {
 
     /// The number of gaits; the first is `stand`, which holds the neutral pose.
     pub fn gait_count(&self) -> usize {
-        match self.is_there {
+        match self.is_present {
             true => usize::from(self.place(Part::Gaits).count),
             false => 0,
         }

@@ -115,7 +115,7 @@ lizard_avr::plain! {
 
 /// The offset of the numbers; below, that of the first byte after them.
 pub(crate) const NUMBERS: u16 = size_of::<Header>() as u16;
-pub(crate) const REST: u16 = NUMBERS + size_of::<Numbers>() as u16;
+pub(crate) const AFTER_NUMBERS: u16 = NUMBERS + size_of::<Numbers>() as u16;
 
 /// The number of curves of each pair of couplers.
 pub const CURVES: usize = 4;
@@ -174,14 +174,14 @@ pub enum Damage {
 }
 
 /// The first byte that the CRC covers.
-const CHECKED: usize = offset_of!(Header, name);
+const CRC_COVERS_FROM: usize = offset_of!(Header, name);
 
 /// Checks the section at the beginning of a region and returns its length.
 ///
 /// # Errors
 /// Returns [`Damage::Missing`], [`Damage::Format`] or [`Damage::Damaged`].
 #[inline(never)]
-pub fn find(flash: Region) -> Result<u16, Damage> {
+pub fn check(flash: Region) -> Result<u16, Damage> {
     if flash.size() < NUMBERS {
         return Err(Damage::Missing);
     }
@@ -192,13 +192,13 @@ pub fn find(flash: Region) -> Result<u16, Damage> {
         return Err(Damage::Format);
     }
     let length = flash.read(offset_of!(Header, length) as u16);
-    if length < REST || length > flash.size() {
+    if length < AFTER_NUMBERS || length > flash.size() {
         return Err(Damage::Damaged);
     }
-    let mut checksum = Checksum::NOTHING;
-    let mut offset = CHECKED as u16;
+    let mut checksum = Checksum::EMPTY;
+    let mut offset = CRC_COVERS_FROM as u16;
     while offset < length {
-        checksum = checksum.and(flash.read(offset));
+        checksum = checksum.with_byte(flash.read(offset));
         offset += 1;
     }
     if checksum.0 != flash.read(offset_of!(Header, crc) as u16) {

@@ -7,7 +7,7 @@ lizard_avr::plain! {
         /// The largest turn in a frame, 1/65536 turn.
         pub per_frame: u16,
         /// Frames for each 1/65536 turn of the longest distance, Q16, rounded up.
-        pub(crate) frames_per_way: u16,
+        pub(crate) frames_per_distance: u16,
     }
 }
 
@@ -26,7 +26,7 @@ impl Slew {
             per_frame,
             // The peak of the speed is 3/2 of its mean, and the rounding of a smoothstep adds up to three steps per
             // frame for each half turn of the distance.
-            frames_per_way: (3u32 << 16).div_ceil(2 * (per_frame as u32 - 6)) as u16,
+            frames_per_distance: (3u32 << 16).div_ceil(2 * (per_frame as u32 - 6)) as u16,
         }
     }
 }

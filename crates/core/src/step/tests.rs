@@ -12,7 +12,7 @@ use crate::virtual_board::{Running, Transmitter, VirtualBoard};
 fn begun(ticks: u8, received: &str) -> Running {
     let mut board = VirtualBoard::default().at_tick(ticks);
     board.send(received.as_bytes());
-    Running::on(Sample::odd().section(), board)
+    Running::with_flash(Sample::odd().section(), board)
 }
 
 /// True if the main loop did something in this step.
@@ -40,7 +40,7 @@ fn a_tick_comes_before_output_and_output_before_input() {
     let mut running = begun(7, "speed 50\r");
     running.board.tick();
     assert!(works(&mut running));
-    assert!(running.board.is_fresh());
+    assert!(running.board.is_frame_pending());
     assert_eq!((written(&running), running.board.unread()), (0, 9));
     assert!(works(&mut running));
     assert!(running.board.transmitter.text.starts_with("# lizard "));

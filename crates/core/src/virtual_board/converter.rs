@@ -7,7 +7,7 @@ use crate::numbers::supplies::Supplies;
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Converter {
     /// The actual supplies.
-    truth: Reading,
+    actual: Reading,
     /// True if the servos' rail is measured too.
     has_rail: bool,
     read: Reading,
@@ -20,7 +20,7 @@ impl Converter {
     /// A converter with these actual supplies, with or without the servos' rail.
     pub fn new(truth: Reading, has_rail: bool) -> Self {
         Self {
-            truth,
+            actual: truth,
             has_rail,
             ..Self::default()
         }
@@ -28,12 +28,12 @@ impl Converter {
 
     /// Changes the actual supplies.
     pub const fn set(&mut self, truth: Reading) {
-        self.truth = truth;
+        self.actual = truth;
     }
 
     /// The actual supplies.
     pub const fn truth(&self) -> Reading {
-        self.truth
+        self.actual
     }
 
     /// True once every voltage has been measured since the program began.
@@ -42,18 +42,18 @@ impl Converter {
     }
 
     pub(super) fn reset(self) -> Self {
-        Self::new(self.truth, self.has_rail)
+        Self::new(self.actual, self.has_rail)
     }
 
     /// Returns the last complete reading, or the default if there is none, and starts the next measurement.
     pub(super) fn next(&mut self) -> Reading {
         match self.frames {
             1 => {
-                self.read.reference = self.truth.reference;
+                self.read.reference = self.actual.reference;
                 self.is_complete |= !self.has_rail;
             }
             3 => {
-                self.read.rail = self.truth.rail;
+                self.read.rail = self.actual.rail;
                 self.is_complete = true;
             }
             _ => {}

@@ -73,7 +73,7 @@ impl Eeprom {
     }
 
     /// The address of the byte that is being written.
-    pub fn under_way(&self) -> Option<u16> {
+    pub fn address_in_write(&self) -> Option<u16> {
         self.under_way.get()
     }
 

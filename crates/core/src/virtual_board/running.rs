@@ -40,11 +40,11 @@ impl Running {
             converter: Converter::new(truth, supplies.rail_reference != 0),
             ..VirtualBoard::new(memory).restarted(restart)
         };
-        Self::on(robot.section(), board)
+        Self::with_flash(robot.section(), board)
     }
 
     /// The firmware on this board, with `flash` in place of the robot's section.
-    pub fn on(flash: Region<'static>, mut board: VirtualBoard) -> Self {
+    pub fn with_flash(flash: Region<'static>, mut board: VirtualBoard) -> Self {
         let mut main = Main::new();
         main.begin(flash, &mut board);
         Self { main, board, flash }
@@ -61,8 +61,8 @@ impl Running {
     }
 
     /// True once the watchdog has ended the pulses: the main loop has stopped and waits for the restart.
-    pub const fn is_over(&self) -> bool {
-        self.board.is_hushed()
+    pub const fn is_stopped_by_watchdog(&self) -> bool {
+        self.board.are_pulses_ended()
     }
 
     /// Steps the main loop until it has nothing to do before time passes.
@@ -70,7 +70,7 @@ impl Running {
     /// # Panics
     /// If the main loop never becomes idle.
     pub fn settle(&mut self) {
-        if self.is_over() {
+        if self.is_stopped_by_watchdog() {
             return;
         }
         for _ in 0..100_000 {
@@ -202,7 +202,7 @@ impl Running {
     /// until the reset. Returns true if the reset comes.
     pub fn stall(&mut self, ms: u16) -> bool {
         let mut bites = self.board.pass_time(ms);
-        while self.is_over() && !bites {
+        while self.is_stopped_by_watchdog() && !bites {
             bites = self.board.pass_time(1);
         }
         if bites {

@@ -51,11 +51,11 @@ fn a_frame_is_played_once_handed_over_and_repeats_while_main_is_late() {
 fn a_stall_below_125_ms_changes_nothing_and_a_longer_one_restarts_the_program() {
     let mut short = standing();
     assert!(!short.stall(WATCHDOG_MS - 20));
-    assert!(!short.board.is_hushed());
+    assert!(!short.board.are_pulses_ended());
     assert_ne!(short.frame(), NONE);
     let mut long = standing();
     assert!(!long.board.pass_time(WATCHDOG_MS + 20));
-    assert!(long.board.is_hushed());
+    assert!(long.board.are_pulses_ended());
     assert_eq!(
         long.board.started_pulses(),
         NONE,
@@ -65,7 +65,7 @@ fn a_stall_below_125_ms_changes_nothing_and_a_longer_one_restarts_the_program() 
     long.settle();
     assert_eq!(long.motion().frames(), frames, "main does not go on");
     assert!(long.stall(1), "and the reset comes");
-    assert!(!long.board.is_hushed());
+    assert!(!long.board.are_pulses_ended());
     assert_eq!(long.board.restart().cause, Cause::Watchdog);
     assert_eq!(long.board.restart().count, 1);
     assert_eq!(
@@ -95,7 +95,7 @@ fn a_reset_leaves_the_pose_and_power_takes_it() {
 fn power_lost_in_a_write_leaves_anything_in_that_byte_and_nowhere_else() {
     let mut board = VirtualBoard::default();
     board.memory.write(17, 0x35);
-    assert_eq!(board.memory.under_way(), Some(17));
+    assert_eq!(board.memory.address_in_write(), Some(17));
     let mut whole = board.clone();
     board.lose_power(Some(0xb7));
     assert_eq!(board.memory.bytes()[17], 0xb7);

@@ -224,7 +224,7 @@ fn tags_near_their_last_places_are_found_as_in_the_whole_picture_and_so_is_one_t
         studio.aim = [2.0 * normal(&mut rng), 2.0 * normal(&mut rng)];
         let background = studio.background(&mut rng);
         let picture = background.picture(f64::from(i), |_| robot, &mut rng);
-        let (mut seen, mut all) = (film.look(&picture), read(&picture));
+        let (mut seen, mut all) = (film.find_tags(&picture), read(&picture));
         for tags in [&mut seen, &mut all] {
             tags.sort_by_key(|tag| tag.id);
         }

@@ -127,7 +127,7 @@ impl Servo {
             if order != last {
                 (last, from) = (order, pulse);
             }
-            let asked = orders[order].asked();
+            let asked = orders[order].pulse_angle();
             let is_flip = order > 0 && orders[order].is_reversed != orders[order - 1].is_reversed;
             pulse = if is_flip {
                 let most = self.slew * FRAME;

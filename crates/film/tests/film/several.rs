@@ -30,7 +30,7 @@ fn studio() -> Studio {
 }
 
 /// Checks that a result agrees with the true movement of a gait.
-fn is_way_of(measured: &Measured, gait: &Gait) {
+fn check_result(measured: &Measured, gait: &Gait) {
     let truth = truth(gait);
     let parts = [
         (measured.forward, truth.forward, 0.4),
@@ -66,12 +66,12 @@ fn each_gait_of_a_film_is_found_between_its_rests_and_measured() {
         let measured = watched
             .measure(&gaits[i], Some(*walk))
             .expect("it is measured");
-        is_way_of(&measured, &gaits[i]);
+        check_result(&measured, &gaits[i]);
     }
     // Both walks together give one result, which is more accurate.
     let [one, other] = [0, 3].map(|i| watched.measure(&gaits[0], Some(walks[i])).expect("a walk"));
     let both = Measured::together(&[one.clone(), other.clone()], &gaits[0]);
-    is_way_of(&both, &gaits[0]);
+    check_result(&both, &gaits[0]);
     assert_eq!(both.cycles, [&one.cycles[..], &other.cycles[..]].concat());
     // A wrong order of the gaits is reported and not accepted.
     let wrong = watched
@@ -124,7 +124,7 @@ fn gaits_without_a_rest_between_them_are_not_mixed() {
         for gait in [first, second] {
             match watched.measure(gait, Some(walks[0])) {
                 // A result must be that of this gait alone: the gait that moves farther can be told from the other.
-                Ok(measured) => is_way_of(&measured, gait),
+                Ok(measured) => check_result(&measured, gait),
                 Err(trouble) => assert!(
                     matches!(
                         trouble,

@@ -48,7 +48,7 @@ fn a_slide_shows_resting_and_sliding_friction_with_head_or_tail_first() {
             ..BOARD
         };
         let slide = slide(&board).expect("it slides");
-        assert_eq!(slide.is_ahead, head == 8.0);
+        assert_eq!(slide.is_head_first, head == 8.0);
         check(slide.tilt, resting.atan().to_degrees(), 0.6);
         check(slide.resting, resting, 0.02);
         check(slide.sliding, sliding, 0.02);

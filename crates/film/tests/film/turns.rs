@@ -2,7 +2,7 @@
 
 use fastrand::Rng;
 use lizard_contact::Place;
-use lizard_film::{Figure, Film, Jig, Seen, Setup, Turns, TurnsTrouble};
+use lizard_film::{Figure, Film, Jig, PathPoint, Setup, Turns, TurnsTrouble};
 
 use crate::render::{Studio, normal};
 use crate::servo::{FRICTION, FULL, Servo};
@@ -36,7 +36,7 @@ impl Eye {
     }
 
     /// The path of a card as its tag would show it: each angle is the mean over the time that the shutter is open.
-    fn path(self, servo: &Servo, rng: &mut Rng) -> Vec<Seen> {
+    fn path(self, servo: &Servo, rng: &mut Rng) -> Vec<PathPoint> {
         const BEGIN: f64 = 0.3;
         let turning = servo.turns(1.0);
         let seen = |i: usize| {
@@ -51,8 +51,8 @@ impl Eye {
     }
 }
 
-fn seen_at(seconds: f64, angle: f64) -> Seen {
-    Seen {
+fn seen_at(seconds: f64, angle: f64) -> PathPoint {
+    PathPoint {
         seconds,
         place: Place {
             forward: 0.0,
@@ -158,7 +158,7 @@ fn a_load_that_slows_nothing_down_tells_no_torque() {
 }
 
 /// The reason why a path cannot be measured.
-fn trouble(path: &[Seen]) -> TurnsTrouble {
+fn trouble(path: &[PathPoint]) -> TurnsTrouble {
     Turns::of(path, JIG).expect_err("it is not measured")
 }
 
@@ -188,7 +188,7 @@ fn steps_that_move_nothing_show_only_how_wide_the_dead_band_is_at_least() {
 fn a_horn_that_stands_still_or_turns_otherwise_is_named() {
     let mut rng = Rng::with_seed(6);
     let mut angle = 0.0;
-    let mut path = |turn: &mut dyn FnMut(f64) -> f64| -> Vec<Seen> {
+    let mut path = |turn: &mut dyn FnMut(f64) -> f64| -> Vec<PathPoint> {
         (0..60 * 55)
             .map(|i| {
                 angle += turn(f64::from(i) / 60.0);

@@ -7,7 +7,7 @@ use crate::Failure;
 use crate::shared::suggestion::did_you_mean;
 
 /// Describes the commands that need a feature, for messages.
-pub(super) fn words(feature: &str) -> &'static str {
+pub(super) fn describe_feature(feature: &str) -> &'static str {
     match feature {
         "simulator" => "the simulator",
         "paper" => "the commands that compute",
@@ -43,7 +43,7 @@ fn list_in_build(commands: &[CommandEntry], has: impl Fn(&str) -> bool) -> Strin
     }
     let features = ["simulator", "paper", "console", "parts"];
     let without = features.into_iter().filter(|feature| !has(feature));
-    let without: Vec<&str> = without.map(words).collect();
+    let without: Vec<&str> = without.map(describe_feature).collect();
     let on = match has("simulator") {
         true => "",
         false => " The simulator runs on Linux.",
@@ -89,7 +89,7 @@ fn missing(name: &str, needs: &[&str], has: impl Fn(&str) -> bool) -> Failure {
     let without: Vec<&str> = needs
         .iter()
         .filter(|feature| !has(feature))
-        .map(|feature| words(feature))
+        .map(|feature| describe_feature(feature))
         .collect();
     let no_simulator = needs.contains(&"simulator") && !has("simulator");
     let all = match no_simulator && !cfg!(target_os = "linux") {
@@ -110,7 +110,7 @@ fn explain_in_build(
     let word = typed.first().map(|word| word.to_string_lossy());
     let word = word.as_deref().unwrap_or_default();
     let names: Vec<String> = known.iter().map(CommandEntry::name).collect();
-    let called = |known: &&CommandEntry| known.name() == word || known.also.contains(&word);
+    let called = |known: &&CommandEntry| known.name() == word || known.aliases.contains(&word);
     let Some(known) = known.iter().find(called) else {
         let like = did_you_mean(word, names.iter().map(String::as_str));
         return Failure::Input(format!(

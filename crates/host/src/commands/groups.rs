@@ -84,7 +84,7 @@ mod tests {
         let row = |group, variant| CommandEntry {
             group,
             variant,
-            also: &[],
+            aliases: &[],
             needs: &[],
         };
         let known = [

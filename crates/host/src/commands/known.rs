@@ -48,7 +48,7 @@ pub(super) struct CommandEntry {
     /// The name of the command's variant in the enum of commands.
     pub(super) variant: &'static str,
     /// Aliases of the command.
-    pub(super) also: &'static [&'static str],
+    pub(super) aliases: &'static [&'static str],
     /// The cargo features that the command needs.
     pub(super) needs: &'static [&'static str],
 }

@@ -52,7 +52,7 @@ pub fn merge(args: MergeArgs) -> Result<(), Failure> {
 /// Reads the parts from files, or from standard input.
 fn shares(files: &[PathBuf]) -> Result<Vec<PartOutput>, Failure> {
     let mut shares = Vec::new();
-    let mut set_once = |name: &str, text: &str| {
+    let mut read_parts = |name: &str, text: &str| {
         for (number, line) in (1..).zip(text.lines()) {
             if line.trim().is_empty() {
                 continue;
@@ -67,12 +67,12 @@ fn shares(files: &[PathBuf]) -> Result<Vec<PartOutput>, Failure> {
     if files.is_empty() {
         let mut text = String::new();
         io::stdin().lock().read_to_string(&mut text)?;
-        set_once("standard input", &text)?;
+        read_parts("standard input", &text)?;
     }
     for file in files {
         let name = file.display().to_string();
         let text = files::read_text(file)?;
-        set_once(&name, &text)?;
+        read_parts(&name, &text)?;
     }
     Ok(shares)
 }

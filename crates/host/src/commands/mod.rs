@@ -75,7 +75,7 @@ macro_rules! commands {
             CommandEntry {
                 group: Group::$group,
                 variant: stringify!($name),
-                also: &[$($alias)?],
+                aliases: &[$($alias)?],
                 needs: &[$($($feature),+)?],
             },
         )+)+];
@@ -275,7 +275,7 @@ mod tests {
             let known: BTreeSet<String> = KNOWN
                 .iter()
                 .flat_map(|known| {
-                    let also = known.also.iter().map(ToString::to_string);
+                    let also = known.aliases.iter().map(ToString::to_string);
                     std::iter::once(known.name()).chain(also)
                 })
                 .collect();
@@ -351,7 +351,7 @@ mod tests {
     fn every_feature_that_a_command_needs_has_words() {
         for known in KNOWN {
             for feature in known.needs {
-                assert_ne!(absent::words(feature), "", "{known:?}");
+                assert_ne!(absent::describe_feature(feature), "", "{known:?}");
             }
         }
     }

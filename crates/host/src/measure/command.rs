@@ -81,7 +81,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let walks = gaits.walks(&films).map_err(Failure::Input)?;
     let report = Report::new(&robot, args.speed, setup, &films, &gaits, &walks)
         .with_ranges(&robot)
-        .beside_mujoco(&args.robot.text()?);
+        .with_mujoco(&args.robot.text()?);
     drop(spinner);
     if let Some(path) = args.picture {
         files::write(&path, picture::draw(&report).as_bytes())?;

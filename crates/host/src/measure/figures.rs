@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use lizard_film::Figure;
-use lizard_measure::{AGREES, verdict};
+use lizard_measure::{MAX_AGREEING_ERRORS, verdict};
 use lizard_robot::edit::{NoSuchKey, with_comment, with_number};
 use serde::Serialize;
 
@@ -43,7 +43,7 @@ impl Key {
             error: figure.error,
             robot,
             differs,
-            agrees: differs.abs() <= AGREES,
+            agrees: differs.abs() <= MAX_AGREEING_ERRORS,
             decimals,
             scale: 1.0,
         }
@@ -99,7 +99,7 @@ pub(super) fn lines(keys: &[Key]) -> String {
 ///
 /// # Errors
 /// Fails if the text has no place for a key.
-pub(super) fn written(text: &str, keys: &[Key]) -> Result<String, NoSuchKey> {
+pub(super) fn with_measured_keys(text: &str, keys: &[Key]) -> Result<String, NoSuchKey> {
     let mut text = text.to_owned();
     for key in keys.iter().filter(|key| !key.agrees) {
         let name = format!("{}.{}", key.table, key.key);

@@ -16,13 +16,13 @@ use crate::shared::files::note_input;
 /// Fails for a film that cannot be read, or one whose tags show no path.
 pub(super) fn watch(path: &Path, rate: Option<f64>, setup: Setup) -> Result<WatchedFilm, Failure> {
     let name = path.display().to_string();
-    let about = |trouble: Trouble| about(&name, &trouble);
+    let about = |trouble: Trouble| film_failure(&name, &trouble);
     let watched = read(path, rate, about)?.watch(setup).map_err(about)?;
     Ok(WatchedFilm { name, watched })
 }
 
 /// The failure of a film, with its name and the reason.
-pub(super) fn about(name: &str, trouble: &dyn Display) -> Failure {
+pub(super) fn film_failure(name: &str, trouble: &dyn Display) -> Failure {
     Failure::Input(format!("{name}: {trouble}"))
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use lizard_identify::{Trouble, Way, identify};
+use lizard_identify::{MeasuredMovement, Trouble, identify};
 use lizard_robot::Robot;
 use rayon::prelude::*;
 use serde::Deserialize;
@@ -97,19 +97,22 @@ pub fn find_keys(args: KeysArgs) -> Result<(), Failure> {
 }
 
 /// Reads the measured gaits of a file.
-fn read(path: &Path, robot: &Robot) -> Result<Vec<Way>, Failure> {
+fn read(path: &Path, robot: &Robot) -> Result<Vec<MeasuredMovement>, Failure> {
     let about = |problem: String| Failure::Input(format!("{}: {problem}", path.display()));
     let output: Output = serde_json::from_str(&files::read_text(path)?).map_err(|error| {
         about(format!(
             "this is not what `lizard measure --json` prints: {error}"
         ))
     })?;
-    let ways = output.gaits.iter().map(|measured| way(measured, robot));
+    let ways = output
+        .gaits
+        .iter()
+        .map(|measured| measured_motion(measured, robot));
     ways.collect::<Result<_, _>>().map_err(about)
 }
 
 /// The distances per cycle of a measured gait, if it was measured with this robot.toml.
-fn way(measured: &Measured, robot: &Robot) -> Result<Way, String> {
+fn measured_motion(measured: &Measured, robot: &Robot) -> Result<MeasuredMovement, String> {
     let Measured { gait, speed, .. } = measured;
     let pace = speed / 100.0;
     let own = robot.gait(gait).map(|gait| gait.period() / pace);
@@ -122,7 +125,7 @@ fn way(measured: &Measured, robot: &Robot) -> Result<Way, String> {
         ));
     }
     let parts = [&measured.forward, &measured.left, &measured.turn];
-    Ok(Way {
+    Ok(MeasuredMovement {
         gait: gait.clone(),
         pace,
         mean: parts.map(|part| part.mean),

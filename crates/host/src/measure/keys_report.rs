@@ -79,7 +79,7 @@ impl KeysReport {
                 ahead: pair(|card| card.ahead),
                 left: pair(|card| card.left),
             },
-            alike: identified.alike.iter().map(names).collect(),
+            alike: identified.correlated.iter().map(names).collect(),
             fit: FitLine {
                 figures: identified.goodness.figures,
                 chi_square_before,
@@ -105,8 +105,8 @@ impl KeyLine {
             error: found.error,
             verdict: match found.verdict {
                 Verdict::Moved => "moved",
-                Verdict::Right => "right",
-                Verdict::Untold => "untold",
+                Verdict::Unchanged => "right",
+                Verdict::Undetermined => "untold",
                 Verdict::Impossible(_) => "impossible",
             },
         }
@@ -145,7 +145,7 @@ pub(super) fn text(identified: &Identified, written: Option<&Path>) -> String {
          {:+.2} +- {:.2} deg.",
         card.ahead, error.ahead, card.left, error.left, card.turn, error.turn
     );
-    for (a, b, correlation) in &identified.alike {
+    for (a, b, correlation) in &identified.correlated {
         let _ = writeln!(
             text,
             "{} and {} look alike in these gaits: their errors are correlated by {correlation:+.2}.",
@@ -186,8 +186,8 @@ fn key_line(found: &Found) -> String {
     };
     let verdict = match found.verdict {
         Verdict::Moved => "changed".to_owned(),
-        Verdict::Right => "right".to_owned(),
-        Verdict::Untold => format!("these gaits do not tell it: {}", key.otherwise),
+        Verdict::Unchanged => "right".to_owned(),
+        Verdict::Undetermined => format!("these gaits do not tell it: {}", key.other_method),
         Verdict::Impossible(value) => {
             format!("would have to be {value:.digits$}, which it cannot; left")
         }

@@ -10,7 +10,7 @@ use lizard_robot::{GRAVITY, Robot, edit};
 use serde::Serialize;
 
 use super::figures::{self, Key};
-use super::film::about;
+use super::film::film_failure;
 use super::filming::{Filming, height, number};
 use super::steps::{self, servo};
 use crate::shared::progress::Spinner;
@@ -116,7 +116,7 @@ pub fn measure_servo(args: ServoArgs) -> Result<(), Failure> {
         files::check_replaceable(output)?;
     }
     let jig = Jig {
-        way: steps::way(&robot, args.servo)?,
+        way: steps::free_direction(&robot, args.servo)?,
         slew: robot.pace().slew,
         spin_up: robot.servo_type().spin_up_ms / 1000.0,
     };
@@ -124,7 +124,8 @@ pub fn measure_servo(args: ServoArgs) -> Result<(), Failure> {
     let spinner = Spinner::new("reading the pictures");
     let film = |path: &Path| -> Result<(Watched, Turns), Failure> {
         let WatchedFilm { name, watched } = args.filming.watch(path, setup)?;
-        let turns = Turns::of(&watched.path, jig).map_err(|trouble| about(&name, &trouble))?;
+        let turns =
+            Turns::of(&watched.path, jig).map_err(|trouble| film_failure(&name, &trouble))?;
         Ok((watched, turns))
     };
     let (watched, free) = film(&args.film)?;
@@ -212,7 +213,7 @@ impl Report {
             height: args.height,
             height_by_size: watched.sight.deck,
             figures,
-            rates: turns.ways.map(pair),
+            rates: turns.rates.map(pair),
             sides: pair(turns.hysteresis),
             still_us: turns.dead_band.still * us.abs(),
             is_spin_up_known: turns.spin_up.is_some(),
@@ -228,7 +229,8 @@ impl Report {
     /// The text of robot.toml with the keys that the film contradicts replaced, and the supply if it was measured.
     fn new_robot(&self, text: &str) -> Result<String, Failure> {
         let refused = |error: &dyn Display| Failure::Input(error.to_string());
-        let mut new = figures::written(text, &self.figures).map_err(|error| refused(&error))?;
+        let mut new =
+            figures::with_measured_keys(text, &self.figures).map_err(|error| refused(&error))?;
         if self.is_volts_measured {
             new = edit::with_number(&new, "servo.volts", self.volts)
                 .and_then(|new| edit::with_comment(&new, "servo.volts", "measured:", "by hand"))

@@ -9,7 +9,7 @@ use lizard_robot::Robot;
 use serde::Serialize;
 
 use super::figures::{self, Key};
-use super::film::about;
+use super::film::film_failure;
 use super::filming::{Filming, height};
 use crate::shared::json;
 use crate::shared::progress::Spinner;
@@ -69,7 +69,7 @@ pub fn measure_slope(args: SlopeArgs) -> Result<(), Failure> {
     let spinner = Spinner::new("reading the pictures");
     let slide = |path: &PathBuf| {
         let WatchedFilm { name, watched } = args.filming.watch(path, setup)?;
-        let slide = Slide::of(&watched).map_err(|trouble| about(&name, &trouble))?;
+        let slide = Slide::of(&watched).map_err(|trouble| film_failure(&name, &trouble))?;
         Ok((name, slide))
     };
     let slides: Vec<(String, Slide)> = args
@@ -99,7 +99,7 @@ impl Report {
         let of = |is_ahead: bool| {
             let slides = slides
                 .iter()
-                .filter(|(_, slide)| slide.is_ahead == is_ahead);
+                .filter(|(_, slide)| slide.is_head_first == is_ahead);
             mean(&slides.map(|(_, slide)| slide.sliding).collect::<Vec<_>>())
         };
         let (forward, backward) = (of(true), of(false));
@@ -121,7 +121,7 @@ impl Report {
         let pair = |figure: Figure| [figure.value, figure.error];
         let line = |(film, slide): &(String, Slide)| Line {
             film: film.clone(),
-            is_head_first: slide.is_ahead,
+            is_head_first: slide.is_head_first,
             tilt: pair(slide.tilt),
             resting: pair(slide.resting),
             sliding: pair(slide.sliding),

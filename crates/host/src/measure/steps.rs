@@ -78,7 +78,7 @@ pub(super) fn check_slew(robot: &Robot) -> Result<(), Failure> {
 
 /// The lines for the console, each with the time until the next one, s.
 fn lines(robot: &Robot, servo: usize) -> Result<Vec<(String, f64)>, Failure> {
-    let way = way(robot, servo)?;
+    let way = free_direction(robot, servo)?;
     let neutral = |sweep: f64| pose(robot, servo, sweep);
     let mut lines = vec![("factory".to_owned(), PAUSE), (neutral(0.0), LEAD - PAUSE)];
     let sign = |is_reversed: bool| {
@@ -110,7 +110,7 @@ fn pose(robot: &Robot, servo: usize, sweep: f64) -> String {
 }
 
 /// The direction from neutral in which the linkage allows all steps of a servo: 1 counter-clockwise, -1 clockwise.
-pub(super) fn way(robot: &Robot, servo: usize) -> Result<f64, Failure> {
+pub(super) fn free_direction(robot: &Robot, servo: usize) -> Result<f64, Failure> {
     let is_free = |way: &f64| {
         orders(*way).iter().all(|order| {
             let Order { sweep, .. } = *order;
@@ -120,7 +120,7 @@ pub(super) fn way(robot: &Robot, servo: usize) -> Result<f64, Failure> {
                 robot.accepted(angles).is_some()
             });
             let travel = robot.servos()[servo].travel();
-            on_the_way && (travel.0..=travel.1).contains(&order.asked())
+            on_the_way && (travel.0..=travel.1).contains(&order.pulse_angle())
         })
     };
     [1.0, -1.0].into_iter().find(is_free).ok_or_else(|| {

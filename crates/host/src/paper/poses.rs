@@ -65,7 +65,7 @@ pub struct Poses<R> {
     /// The meaning of each field of a line.
     columns: Vec<Column>,
     /// True until the first line, read while looking for a header, has been returned as a pose.
-    is_unanswered: bool,
+    has_pending_line: bool,
 }
 
 impl<R: BufRead> Poses<R> {
@@ -79,7 +79,7 @@ impl<R: BufRead> Poses<R> {
             line: Vec::new(),
             number: 0,
             columns: SERVO_ORDER.to_vec(),
-            is_unanswered: false,
+            has_pending_line: false,
         };
         let expected = ANGLES.join(",");
         if !poses.advance()? {
@@ -91,7 +91,7 @@ impl<R: BufRead> Poses<R> {
         let names: Vec<&str> = text.split(',').map(trim_quotes).collect();
         // A header contains no number; a pose does.
         if names.iter().any(|name| name.parse::<f64>().is_ok()) {
-            poses.is_unanswered = true;
+            poses.has_pending_line = true;
             return Ok(poses);
         }
         let number = poses.number;
@@ -218,7 +218,7 @@ impl<R: BufRead> Iterator for Poses<R> {
     type Item = Result<Timed, Failure>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        if std::mem::take(&mut self.is_unanswered) {
+        if std::mem::take(&mut self.has_pending_line) {
             return Some(self.parse());
         }
         match self.advance() {

@@ -42,15 +42,15 @@ pub fn course(
 /// The servos' targets from their pulses: sweeps from neutral, deg. A servo without a pulse
 /// keeps its previous target.
 fn targets(robot: &Robot, log: &FrameLog) -> Vec<[f64; 4]> {
-    let mut now = [0.0; 4];
+    let mut targets = [0.0; 4];
     let frames = log.widths.iter().map(|widths| {
         for (servo, width) in widths.iter().enumerate() {
             if *width > 0 {
                 let us = f64::from(*width) / CYCLES_PER_US as f64;
-                now[servo] = robot.servos()[servo].sweep(us);
+                targets[servo] = robot.servos()[servo].sweep(us);
             }
         }
-        now
+        targets
     });
     frames.collect()
 }

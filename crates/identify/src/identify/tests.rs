@@ -14,12 +14,12 @@ const ERROR: f64 = 0.05;
 fn model(values: &Values) -> Vec<Travel> {
     let mut rng = Rng::with_seed(5);
     let mut part = || {
-        let mut way = 0.0;
+        let mut movement = 0.0;
         for (value, key) in values.iter().zip(&KEYS) {
-            let x = value / key.doubt();
-            way += deviate(&mut rng) * (x + 0.1 * x * x);
+            let x = value / key.prior_error();
+            movement += deviate(&mut rng) * (x + 0.1 * x * x);
         }
-        way
+        movement
     };
     let mut travel = |_| Travel {
         forward: 30.0 + part(),
@@ -40,11 +40,11 @@ fn start() -> Values {
 }
 
 /// The movements of a robot as measured through a card that is glued on inexactly.
-fn measured(values: &Values, card: Card, rng: &mut Rng) -> Vec<Way> {
+fn measured(values: &Values, card: Card, rng: &mut Rng) -> Vec<MeasuredMovement> {
     let way = |travel: Travel| {
-        let seen = card.seen(travel);
+        let seen = card.card_travel(travel);
         let parts = [seen.forward, seen.left, seen.turn];
-        Way {
+        MeasuredMovement {
             gait: "walk".to_owned(),
             pace: 1.0,
             mean: parts.map(|part| part + ERROR.hypot(MODEL_ERROR) * deviate(rng)),
@@ -55,7 +55,7 @@ fn measured(values: &Values, card: Card, rng: &mut Rng) -> Vec<Way> {
 }
 
 fn card(rng: &mut Rng) -> Card {
-    Card::DOUBTS.map(|doubt| doubt * deviate(rng)).into()
+    Card::PRIOR_ERRORS.map(|doubt| doubt * deviate(rng)).into()
 }
 
 fn verdicts(found: &Identified) -> Vec<Verdict> {
@@ -71,7 +71,7 @@ fn changed_keys_are_within_two_errors_in_95_of_100_and_right_ones_stay() {
         let mut truth = start();
         let is_changed: [bool; COUNT] = std::array::from_fn(|_| rng.bool());
         for i in (0..COUNT).filter(|&i| is_changed[i]) {
-            truth[i] += KEYS[i].doubt()
+            truth[i] += KEYS[i].prior_error()
                 * if i == PLAY {
                     rng.f64()
                 } else {
@@ -84,7 +84,7 @@ fn changed_keys_are_within_two_errors_in_95_of_100_and_right_ones_stay() {
         explained += f64::from(u8::from(found.goodness.explains));
         for i in 0..COUNT {
             let key = &found.keys[i];
-            assert!(key.verdict != Verdict::Untold, "{seed} {key:?}");
+            assert!(key.verdict != Verdict::Undetermined, "{seed} {key:?}");
             if is_changed[i] {
                 changed += 1.0;
                 within += f64::from(u8::from((key.after - truth[i]).abs() <= 2.0 * key.error));
@@ -138,16 +138,16 @@ fn a_key_without_influence_stays_and_is_said_to_be_untold() {
     let card = card(&mut rng);
     let mut ways = measured(&truth, card, &mut rng);
     for (way, travel) in ways.iter_mut().zip(blind(&truth)) {
-        let seen = card.seen(travel);
+        let seen = card.card_travel(travel);
         way.mean = [seen.forward, seen.left, seen.turn];
     }
     let found = solve(&ways, start(), &blind).expect("a fit");
-    let mut wanted = vec![Verdict::Right; COUNT];
-    (wanted[0], wanted[5]) = (Verdict::Moved, Verdict::Untold);
+    let mut wanted = vec![Verdict::Unchanged; COUNT];
+    (wanted[0], wanted[5]) = (Verdict::Moved, Verdict::Undetermined);
     assert_eq!(verdicts(&found), wanted);
     assert_eq!(found.keys[5].after, found.keys[5].before);
     assert!(
-        found.keys[5].error > 0.9 * KEYS[5].doubt(),
+        found.keys[5].error > 0.9 * KEYS[5].prior_error(),
         "{:?}",
         found.keys[5]
     );
@@ -165,8 +165,8 @@ fn two_keys_that_look_alike_are_named() {
     let mut rng = Rng::with_seed(1);
     let ways = measured(&start(), Card::default(), &mut rng);
     let found = solve(&ways, start(), &alike).expect("a fit");
-    let [(a, b, correlation)] = found.alike[..] else {
-        panic!("{:?}", found.alike);
+    let [(a, b, correlation)] = found.correlated[..] else {
+        panic!("{:?}", found.correlated);
     };
     assert_eq!(
         (a.full_name(), b.full_name()),

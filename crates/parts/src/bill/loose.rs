@@ -7,7 +7,7 @@ pub(super) type Row = (usize, &'static str, f64, Price);
 
 /// Things to buy that have no place of their own on the robot, such as wires. Their mass centre is assumed to be
 /// that of all other bodies.
-pub(super) const ALWAYS: [Row; 12] = [
+pub(super) const LOOSE_ITEMS: [Row; 12] = [
     (
         2,
         "wire of 0.5 mm2 (20 AWG), one red and one black, 1 m long",

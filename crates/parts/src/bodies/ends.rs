@@ -52,7 +52,7 @@ fn add_bar(builder: &mut Builder, servo: usize, z: Span) {
         cut.extend(hole);
         Prism::new(add, cut, z)
     };
-    let prisms = match looks::fixed(builder, servo, to) {
+    let prisms = match looks::second_screw_holes(builder, servo, to) {
         Some([below, above]) => {
             let seat = z[1] - builder.parts.screw.head_height - PLAY;
             let lower = layer(Some(below), [z[0], seat]);

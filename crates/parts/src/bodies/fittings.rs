@@ -28,7 +28,7 @@ const TIE: f64 = 1.6;
 const WING: [f64; 3] = [25.2, 51.2, 40.0];
 /// The openings of a wing, mm: from and to in x, away from the middle, then from and to in y. They save weight;
 /// between them is the arm that carries the wing.
-const OPEN: [[[f64; 2]; 2]; 2] = [
+const WING_OPENINGS: [[[f64; 2]; 2]; 2] = [
     [[32.5, 43.0], [-36.5, -26.0]],
     [[32.5, 43.0], [-12.0, 26.0]],
 ];
@@ -53,7 +53,7 @@ fn slot(x: f64, y: f64, [along, across]: [f64; 2]) -> Shape {
 /// for cable ties beside the terminal strips.
 pub fn slots(builder: &Builder) -> Vec<Shape> {
     let mut slots = Vec::new();
-    if let Some(x) = beside(builder) {
+    if let Some(x) = strap_slot_x(builder) {
         slots.extend([-x, x].map(|x| slot(x, 0.0, STRAP_SLOT)));
     }
     let strips = strips(builder);
@@ -82,7 +82,7 @@ pub fn wings(holes: [(f64, f64); 4]) -> [Vec<Shape>; 2] {
     for side in [-1.0, 1.0] {
         let size = at(outer - inner, 2.0 * half);
         add.push(Shape::rectangle(at(side * middle, 0.0), size, 4.0));
-        for [x, y] in OPEN {
+        for [x, y] in WING_OPENINGS {
             let size = at(x[1] - x[0], y[1] - y[0]);
             let middle = at(side * (x[0] + x[1]) / 2.0, (y[0] + y[1]) / 2.0);
             cut.push(Shape::rectangle(middle, size, 2.0));
@@ -131,7 +131,7 @@ fn tie_of_switch() -> f64 {
 
 /// Distance of the strap's slots from the plate's middle, mm; `None` if the plate is no
 /// wider than the battery, so that the strap goes around both.
-fn beside(builder: &Builder) -> Option<f64> {
+fn strap_slot_x(builder: &Builder) -> Option<f64> {
     let [across, _, _] = builder.parts.battery;
     let x = (across + STRAP[1]) / 2.0;
     let min = x + STRAP_SLOT[1] / 2.0 + builder.parts.wall;
@@ -220,14 +220,14 @@ fn add_on_deck(builder: &mut Builder) {
         at(x(Fitting::Switch), switch()),
         top,
     );
-    let way = fuse() - (length(Fitting::Fuse, 1) + length(Fitting::Plus, 1)) / 2.0 - 0.3;
-    add_block(builder, Fitting::Plus, at(x(Fitting::Plus), way), top);
+    let plus_y = fuse() - (length(Fitting::Fuse, 1) + length(Fitting::Plus, 1)) / 2.0 - 0.3;
+    add_block(builder, Fitting::Plus, at(x(Fitting::Plus), plus_y), top);
     // Each resistor leads from a signal terminal to the middle one: two span one pitch, two span two.
     let outside = -ON_WING - length(Fitting::Signals, 0) - 0.4 - half(Fitting::Resistor);
     let row = length(Fitting::Resistor, 0) + 0.4;
     let places = [(1.0, -1.0), (0.0, -0.5), (0.0, 0.5), (1.0, 1.0)];
-    for (number, (out, ways)) in (1..).zip(places) {
-        let middle = at(outside - out * row, signals() + ways * PITCH);
+    for (number, (out, pitches)) in (1..).zip(places) {
+        let middle = at(outside - out * row, signals() + pitches * PITCH);
         let (size, name) = (Fitting::Resistor.facts().size, format!("resistor {number}"));
         add_sized_block(builder, Fitting::Resistor, name, middle, top + 4.0, size);
     }
@@ -280,7 +280,7 @@ fn add_strap(builder: &mut Builder) {
         let middle = Vector::new((from + to) / 2.0, 0.0);
         Shape::rectangle(middle, Vector::new(to - from, wide), 0.0)
     };
-    let out = match beside(builder) {
+    let out = match strap_slot_x(builder) {
         Some(_) => x,
         None => x.max(builder.layout.plate.half.x),
     };

@@ -2,7 +2,7 @@
 //! independent of the pose.
 
 use lizard_kinematics::{End, Side, Vector};
-use lizard_robot::servo::HAND;
+use lizard_robot::servo::ARM_SIDE;
 use lizard_robot::{LegPlan, Plate, Robot};
 
 /// Distance of the standoffs from the plate's middle, mm: to the right, forward.
@@ -49,7 +49,7 @@ impl Layout {
         }
         Self {
             shafts: lizard.shafts(),
-            hand: HAND,
+            hand: ARM_SIDE,
             crank,
             arm,
             legs: *robot.legs(),

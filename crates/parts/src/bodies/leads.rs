@@ -19,13 +19,13 @@ pub const LEAD: [f64; 2] = [4.0, 1.2];
 /// Width of a notch beyond that of a lead, mm.
 const NOTCH_PLAY: f64 = 1.0;
 /// From the bottom of the case to the lead's lower edge, and the height that it takes, mm.
-const LEAVES: [f64; 2] = [3.0, 4.0];
+const LEAD_EXIT: [f64; 2] = [3.0, 4.0];
 /// Length that stands out of the case before the fold, mm.
 const BEND: f64 = 4.0;
 /// A hole for the leads and the wires, mm: across and along the plate.
 const WIRES: [f64; 2] = [8.4, 6.0];
 /// Distance of such a hole beyond the standoffs, mm.
-const BEYOND: f64 = 2.0;
+const HOLE_BEYOND_STANDOFFS: f64 = 2.0;
 
 /// The notch in a servo's opening. `fit` is the air on each side, `outward` the direction
 /// of the shaft's end: 1 forward, -1 back.
@@ -40,7 +40,7 @@ pub fn notch(body: &ServoBody, middle: Vector, fit: f64, outward: f64) -> Shape 
 }
 
 fn wires(sign: f64) -> Vector {
-    Vector::new(0.0, sign * (STANDOFFS[1] + BEYOND))
+    Vector::new(0.0, sign * (STANDOFFS[1] + HOLE_BEYOND_STANDOFFS))
 }
 
 /// The holes in plate and deck through which leads and wires go up.
@@ -63,7 +63,7 @@ pub fn add(builder: &mut Builder) {
         let at = Vector::new;
         let up = wires(outward) + at(-inner * 1.6, 0.0);
         let radius = LEAD[1];
-        let low = builder.stack.servo + LEAVES[0];
+        let low = builder.stack.servo + LEAD_EXIT[0];
         let [bend, corner] = [at(middle.x, end), at(x, end)];
         let before = at(x, middle.y - outward * half.y);
         let way = vec![
@@ -72,7 +72,7 @@ pub fn add(builder: &mut Builder) {
             Shape::bar(corner, before, radius),
             Shape::bar(before, up, radius),
         ];
-        let lies = [low, low + LEAVES[1]];
+        let lies = [low, low + LEAD_EXIT[1]];
         let prisms = vec![
             Prism::solid(way, lies),
             Prism::solid([Shape::disc(up, radius)], [lies[1], builder.stack.deck[1]]),

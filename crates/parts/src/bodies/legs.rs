@@ -30,12 +30,12 @@ const FOOT_SCREW: f64 = 10.0;
 const PLA: f64 = 3000.0;
 /// Stiffness of a leaf, N/mm. With 0.4 to 0.6 a foot that is 1 mm too long costs no gait
 /// more than 5 % of its distance.
-const YIELD: f64 = 0.5;
+const LEAF_STIFFNESS: f64 = 0.5;
 
 /// The free length of a leaf, mm. The stiffness of a beam clamped at one end is
 /// E b t^3 / (4 L^3).
 fn leaf_length(width: f64) -> f64 {
-    libm::cbrt(PLA * width * (LEAF * LEAF * LEAF) / (4.0 * YIELD))
+    libm::cbrt(PLA * width * (LEAF * LEAF * LEAF) / (4.0 * LEAF_STIFFNESS))
 }
 
 pub fn add(builder: &mut Builder) {

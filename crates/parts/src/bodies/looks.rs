@@ -43,7 +43,7 @@ fn length(builder: &Builder, end: End) -> f64 {
 
 /// The hole for the second screw in a coupler that carries such a part: in the coupler's lower layer, and in its
 /// upper one, where the head of a screw from above is sunk.
-pub fn fixed(builder: &Builder, servo: usize, point: Vector) -> Option<[Shape; 2]> {
+pub fn second_screw_holes(builder: &Builder, servo: usize, point: Vector) -> Option<[Shape; 2]> {
     let (end, hand) = at_end(servo);
     let at = point - Vector::new(BACK, 0.0);
     match (length(builder, end) > 0.0, end, hand) {
@@ -84,7 +84,7 @@ pub fn add(builder: &mut Builder, end: End) -> Looks {
 type Flat = (Vec<Shape>, Vec<Shape>);
 
 /// The point of an end, and the outward direction there at neutral, in a coupler's frame.
-fn out(builder: &Builder, servo: usize, neutral: &Solution) -> [Vector; 2] {
+fn outward(builder: &Builder, servo: usize, neutral: &Solution) -> [Vector; 2] {
     let (end, hand) = at_end(servo);
     let bars = neutral.end(end);
     let along = end.mirror([bars.left_coupler, bars.right_coupler][hand]);
@@ -99,14 +99,14 @@ fn turned(direction: Vector, by: f64) -> Vector {
 }
 
 fn tail(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> Flat {
-    let [point, straight] = out(builder, servo, neutral);
+    let [point, straight] = outward(builder, servo, neutral);
     // The left link points to the robot's left, the right one to its right.
     let (_, hand) = at_end(servo);
-    let way = turned(straight, if hand == 0 { -APART } else { APART });
+    let outward = turned(straight, if hand == 0 { -APART } else { APART });
     let half = builder.half_bar();
-    let wide = way.left() * (half - 1.5);
+    let wide = outward.left() * (half - 1.5);
     let second = point - Vector::new(BACK, 0.0);
-    let corners = [point + wide, point - wide, point + way * (length - 1.5)];
+    let corners = [point + wide, point - wide, point + outward * (length - 1.5)];
     let add = vec![Shape::bar(second, point, half), Shape::hull(&corners, 1.5)];
     (add, vec![builder.hole(point)])
 }
@@ -115,7 +115,7 @@ fn head(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> Fla
     /// Radius of the corners, and of an eye, mm.
     const ROUND: f64 = 7.0;
     const EYE: f64 = 2.5;
-    let [point, way] = out(builder, servo, neutral);
+    let [point, way] = outward(builder, servo, neutral);
     let at = |ahead: f64, left: f64| point + way * ahead + way.left() * left;
     let second = point - Vector::new(BACK, 0.0);
     let wide = 0.24 * length;

@@ -176,12 +176,12 @@ impl MeshBuilder<'_> {
             let [x, y, _] = self.mesh.corners[corner];
             progress(side, end, Vector::new(x, y))
         };
-        let ways = |chain: &[usize]| {
+        let distances = |chain: &[usize]| {
             let mut ways: Vec<f64> = chain.iter().map(along).collect();
             ways[0] = 0.0;
             ways
         };
-        let (low_ways, high_ways) = (ways(&low), ways(&high));
+        let (low_ways, high_ways) = (distances(&low), distances(&high));
         let (mut i, mut j) = (0, 0);
         let mut triangles = Vec::new();
         while i + 1 < low.len() || j + 1 < high.len() {

@@ -14,7 +14,7 @@ use crate::part::Part;
 
 /// A body's name in the guide, such as `M3 x 12` for a screw; for a printed part its noun
 /// and its mark. `None` for a lead, and for a printed body that is in none of `parts`.
-pub fn called(body: &Body, parts: &[Part]) -> Option<String> {
+pub fn display_name(body: &Body, parts: &[Part]) -> Option<String> {
     Some(match body.kind {
         Kind::Screw(length) => format!("M3 x {length}"),
         Kind::HexScrew(length) => format!("M3 x {length}, hexagon head"),
@@ -44,7 +44,7 @@ pub fn called(body: &Body, parts: &[Part]) -> Option<String> {
 pub fn counted(bodies: &[&Body], parts: &[Part]) -> Vec<String> {
     let mut counts: BTreeMap<(bool, usize, String), usize> = BTreeMap::new();
     for body in bodies {
-        if let Some(name) = called(body, parts) {
+        if let Some(name) = display_name(body, parts) {
             let screw = !body.kind.is_printed();
             // Shorter names come first: M3 x 8 before M3 x 12.
             *counts.entry((screw, name.len(), name)).or_default() += 1;
@@ -65,7 +65,7 @@ pub fn names(
 ) -> Vec<Label> {
     let mut labels_by_name: BTreeMap<String, (f64, usize, Label)> = BTreeMap::new();
     for PictureBody { body, lift, .. } in drawn.iter().filter(|drawn| !drawn.grey) {
-        let (Some(name), Some(prism)) = (called(body, parts), body.prisms.last()) else {
+        let (Some(name), Some(prism)) = (display_name(body, parts), body.prisms.last()) else {
             continue;
         };
         let at = assembly.place(body.mount, pose).map(prism.add[0].middle());

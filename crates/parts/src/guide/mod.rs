@@ -36,7 +36,7 @@ const PICTURE_WIDTH: f64 = 950.0;
 pub const CORNER: usize = 0;
 
 /// The guide's introduction.
-const BEFORE: &str = "No printed robot has walked yet. So print in this order, and stop where something is not as it should be:\n\n\
+const INTRODUCTION: &str = "No printed robot has walked yet. So print in this order, and stop where something is not as it should be:\n\n\
 1. the **coupon** (`lizard parts DIR --coupon`): the first column into which everything goes by hand is your printer's `fit`;\n\
 2. one **corner** (`lizard parts DIR --corner`): a seat, a link, a leg, a strut and a foot, three hours. Put it together as in steps 1, 5 and 7 to 9;\n\
 3. everything.\n\n\
@@ -88,7 +88,7 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
     let robot = picture(assembly, &all, pose, &View::default(), &names);
     files.push(File::text("guide/robot.svg".to_owned(), robot));
     let mut text = format!(
-        "# Building the robot\n\n![The robot](robot.svg)\n\n{BEFORE}\n\n{}\n",
+        "# Building the robot\n\n![The robot](robot.svg)\n\n{INTRODUCTION}\n\n{}\n",
         drilled(&parts)
     );
     let _ = writeln!(text, "## What is needed\n\n{bill}");
@@ -102,7 +102,9 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
             continue;
         }
         let _ = writeln!(text, "Take {}.\n", legend::counted(&new, &parts).join("; "));
-        let poses_here = access_poses.iter().filter(|aside| aside.step == number);
+        let poses_here = access_poses
+            .iter()
+            .filter(|access_pose| access_pose.step == number);
         let at_bench = step
             .stages
             .iter()
@@ -182,7 +184,7 @@ impl Scene<'_> {
         };
         type BodyFilter = fn(&Body) -> bool;
         let (all, at_corner): (BodyFilter, BodyFilter) = (|_| true, at_corner);
-        let extra = match self.step.near {
+        let extra = match self.step.extra_view {
             ExtraView::None => None,
             ExtraView::Corner => Some(("near", "the front left corner", corner, 0.6, at_corner)),
             ExtraView::CornerBelow => {

@@ -63,7 +63,7 @@ impl Default for View {
 }
 
 /// Distance of the eye from the robot's middle, mm.
-const AWAY: f64 = 900.0;
+const EYE_DISTANCE: f64 = 900.0;
 /// Largest angle of a chord, rad.
 const CHORD: f64 = 0.55;
 /// Least height of a slice, mm.
@@ -103,13 +103,13 @@ impl Eye {
         let (x, along) = (point.dot(self.right), point.dot(self.away));
         let near = along * self.cos + z * self.sin;
         let up = z * self.cos - along * self.sin;
-        let scale = AWAY / (AWAY - near);
+        let scale = EYE_DISTANCE / (EYE_DISTANCE - near);
         (x * scale, -up * scale)
     }
 
     /// The position of the eye in plan view.
     fn at(&self) -> Vector {
-        self.away * (AWAY * self.cos)
+        self.away * (EYE_DISTANCE * self.cos)
     }
 }
 

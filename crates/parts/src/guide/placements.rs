@@ -13,7 +13,7 @@ use crate::bodies::assembly::Assembly;
 use crate::layers::body::{Body, Kind};
 use crate::layers::placement::Placement;
 use crate::layers::shape::Shape;
-use crate::order::steps::{Step, place_in, steps};
+use crate::order::steps::{Step, step_and_stage, steps};
 use crate::part::Part;
 
 /// The placement of a body.
@@ -81,7 +81,7 @@ pub fn placements(assembly: &Assembly, pose: &Solution) -> String {
     let parts = assembly.parts();
     let steps = steps(assembly.robot().drive().strut().is_some());
     let placed = |body| {
-        let (step, stage) = place_in(&steps, body);
+        let (step, stage) = step_and_stage(&steps, body);
         let part = parts.iter().find(|part| part.bodies.contains(&body.name));
         let place = assembly.place(body.mount, pose);
         Placed {

@@ -26,7 +26,7 @@ pub fn closed(prisms: &[Prism]) -> (Vec<Prism>, usize) {
         let below = Outline::of(&pair[0]);
         let above = &prisms[number + 1];
         let low = above.z[0];
-        let high = skin(low);
+        let high = first_layer_top(low);
         for hole in &above.cut {
             if !begins_in_air(hole, above, &below) {
                 continue;
@@ -45,7 +45,7 @@ pub fn closed(prisms: &[Prism]) -> (Vec<Prism>, usize) {
 
 /// Top of the first printed layer above a height. A slicer samples each layer in its
 /// middle.
-fn skin(low: f64) -> f64 {
+fn first_layer_top(low: f64) -> f64 {
     let first = ((low - LAYER_MM / 2.0 + SAME_HEIGHT_MM) / LAYER_MM).floor() + 1.0;
     LAYER_MM * (first + 1.0)
 }
@@ -91,7 +91,7 @@ mod tests {
     #[test]
     fn a_closed_layer_is_one_that_a_slicer_sees() {
         for low in [2.0, 4.1, 1.33, 3.0, 0.85] {
-            let high = skin(low);
+            let high = first_layer_top(low);
             // Slicers look at 0.1, 0.3, 0.5 mm and so on.
             let seen = (0..100).map(|i| 0.1 + LAYER_MM * f64::from(i));
             let count = seen.filter(|z| low + 1e-9 < *z && *z < high - 1e-9).count();

@@ -142,7 +142,7 @@ impl Shape {
 
     /// Depth of this shape within a hole, mm; below 0 if it sticks out. A lower bound if its
     /// points may be displaced, by up to `strayed` along x and y.
-    pub fn within(&self, hole: &Self, strayed: Vector) -> f64 {
+    pub fn depth_in(&self, hole: &Self, strayed: Vector) -> f64 {
         let sharp = Self {
             points: hole.points.clone(),
             radius: 0.0,
@@ -154,7 +154,7 @@ impl Shape {
             .iter()
             .map(out)
             .fold(f64::NEG_INFINITY, f64::max);
-        let anyhow = air - outermost - strayed.length();
+        let general_bound = air - outermost - strayed.length();
         // A sharper bound for a long hole with a shape that slides along it.
         let lines = hole.lines().flat_map(|(from, out)| {
             let stray = out.x.abs() * strayed.x + out.y.abs() * strayed.y;
@@ -164,9 +164,9 @@ impl Shape {
         });
         let outermost = lines.fold(f64::NEG_INFINITY, f64::max);
         if hole.points.len() > 2 && outermost <= 0.0 {
-            anyhow.max(air - outermost)
+            general_bound.max(air - outermost)
         } else {
-            anyhow
+            general_bound
         }
     }
 
@@ -265,17 +265,17 @@ mod tests {
         let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} {b}");
         let still = at(0.0, 0.0);
         let slot = Shape::bar(at(0.0, 0.0), at(5.0, 0.0), 1.6);
-        let pin = |x: f64, y: f64| Shape::disc(at(x, y), 1.5).within(&slot, still);
+        let pin = |x: f64, y: f64| Shape::disc(at(x, y), 1.5).depth_in(&slot, still);
         near(pin(5.0, 0.0), 0.1);
         near(pin(2.0, 0.05), 0.05);
         near(pin(6.0, 0.0), -0.9);
         let bore = Shape::rectangle(at(0.0, 0.0), at(50.0, 6.4), 0.0);
         let rod = Shape::rectangle(at(1.0, 0.0), at(40.0, 6.0), 1.0);
-        near(rod.within(&bore, still), 0.2);
+        near(rod.depth_in(&bore, still), 0.2);
         // A shift along the bore takes no air up to its end, a shift across takes it all.
-        near(rod.within(&bore, at(3.0, 0.1)), 0.1);
-        near(rod.within(&bore, at(3.9, 0.0)), 0.1);
-        assert!(bore.within(&rod, still) < 0.0);
+        near(rod.depth_in(&bore, at(3.0, 0.1)), 0.1);
+        near(rod.depth_in(&bore, at(3.9, 0.0)), 0.1);
+        assert!(bore.depth_in(&rod, still) < 0.0);
     }
 
     #[test]

@@ -8,7 +8,7 @@ use crate::model::node::Node;
 
 /// A cut joint that a constraint closes: a point that two bodies share.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Closed {
+pub(crate) struct LoopJoint {
     /// The name, such as `end head`.
     pub name: String,
     /// The two bodies that share the point.
@@ -18,13 +18,13 @@ pub(crate) struct Closed {
 }
 
 /// Returns all cut joints: those of head and tail, of the sliders, of the legs' parallelograms and of the struts.
-pub(crate) fn all(assembly: &Assembly, slotted: bool) -> Vec<Closed> {
+pub(crate) fn all(assembly: &Assembly, slotted: bool) -> Vec<LoopJoint> {
     let (lizard, layout) = (assembly.robot().lizard(), assembly.layout());
     let mut all = Vec::new();
     // Each point is on the x axis of the first body.
     let mut close = |name: String, bodies: [Node; 2], x: f64| {
         let at = Vector::new(x, 0.0);
-        all.push(Closed { name, bodies, at });
+        all.push(LoopJoint { name, bodies, at });
     };
     for end in End::ALL {
         let couplers = end.servos().map(|servo| Node::Of(Mount::Coupler(servo)));

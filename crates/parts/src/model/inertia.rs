@@ -70,7 +70,7 @@ impl Inertia {
     }
 
     /// The moments of this body and another one together.
-    pub fn and(mut self, other: &Self) -> Self {
+    pub fn plus(mut self, other: &Self) -> Self {
         self.mass += other.mass;
         for i in 0..3 {
             self.first[i] += other.first[i];
@@ -158,7 +158,7 @@ mod tests {
             prism(Shape::rectangle(middle, size, 0.0), [0.0, 3.0])
         };
         let whole = block(5.0, 20.0);
-        let both = block(0.0, 10.0).and(&block(10.0, 10.0)).scaled(0.5);
+        let both = block(0.0, 10.0).plus(&block(10.0, 10.0)).scaled(0.5);
         assert!((both.mass - whole.mass / 2.0).abs() < 1e-9);
         for (part, wanted) in both.tensor().into_iter().zip(whole.tensor()) {
             assert!((part - wanted / 2.0).abs() < 1e-6, "{part} {wanted}");

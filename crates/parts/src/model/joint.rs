@@ -5,7 +5,7 @@ use lizard_robot::SLOT;
 use lizard_robot::servo::NAMES;
 
 use crate::layers::body::Mount;
-use crate::model::closed::Closed;
+use crate::model::closed::LoopJoint;
 use crate::model::node::Node;
 use crate::model::text::{MILLI, round};
 use crate::model::writer::Writer;
@@ -17,7 +17,7 @@ impl Node {
     }
 }
 
-impl Closed {
+impl LoopJoint {
     /// The joint's name without blanks.
     pub(super) fn identifier(&self) -> String {
         self.name.replace(' ', "_")

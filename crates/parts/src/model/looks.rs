@@ -4,14 +4,14 @@ use crate::layers::body::Kind;
 
 /// The colour that some kinds of parts share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Look {
+pub(super) struct Material {
     /// The name of its material.
     pub name: &'static str,
     /// Red, green, blue and opacity, 0 to 1.
     pub colour: &'static str,
 }
 
-impl Look {
+impl Material {
     /// All looks.
     pub const ALL: [Self; 7] = [
         Self::new("printed", "0.36 0.62 0.36 1"),

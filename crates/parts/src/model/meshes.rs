@@ -3,21 +3,21 @@
 use crate::files::File;
 use crate::files::mesh::Mesh;
 use crate::files::stl::stl;
-use crate::model::looks::Look;
+use crate::model::looks::Material;
 use crate::model::node::Node;
 use crate::model::pieces::Piece;
 
 /// The looks that occur among the parts of a body.
-pub(super) fn looks(pieces: &[Piece], node: Node) -> impl Iterator<Item = Look> {
-    let is_present = move |look: &Look| {
+pub(super) fn looks(pieces: &[Piece], node: Node) -> impl Iterator<Item = Material> {
+    let is_present = move |look: &Material| {
         let mut own = pieces.iter().filter(|piece| piece.node == node);
-        own.any(|piece| Look::of(piece.kind) == *look)
+        own.any(|piece| Material::of(piece.kind) == *look)
     };
-    Look::ALL.into_iter().filter(is_present)
+    Material::ALL.into_iter().filter(is_present)
 }
 
 /// The name of the mesh file of those parts of a body that have this look.
-pub(super) fn file(node: Node, look: Look) -> String {
+pub(super) fn file(node: Node, look: Material) -> String {
     format!("{}-{}.stl", node.identifier(), look.name)
 }
 
@@ -27,7 +27,7 @@ pub(super) fn files(pieces: &[Piece], nodes: &[Node]) -> Vec<File> {
     for &node in nodes {
         for look in looks(pieces, node) {
             let mut mesh = Mesh::default();
-            let is_own = |piece: &&Piece| piece.node == node && Look::of(piece.kind) == look;
+            let is_own = |piece: &&Piece| piece.node == node && Material::of(piece.kind) == look;
             for piece in pieces.iter().filter(is_own) {
                 let first = mesh.corners.len();
                 mesh.corners.extend(&piece.mesh.corners);

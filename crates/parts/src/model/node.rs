@@ -28,9 +28,9 @@ pub(crate) enum Freedom {
     /// Turning about a vertical axis through its origin.
     Turns,
     /// Sliding along its own x axis.
-    Along,
+    SlidesAlongX,
     /// Sliding up and down.
-    Upright,
+    SlidesVertically,
 }
 
 impl Node {
@@ -83,8 +83,8 @@ impl Node {
     pub fn freedom(self) -> Freedom {
         match self {
             Self::Of(Mount::Chassis) => Freedom::Free,
-            Self::Of(Mount::Rod(_)) | Self::Slot(_) => Freedom::Along,
-            Self::Pad(_) => Freedom::Upright,
+            Self::Of(Mount::Rod(_)) | Self::Slot(_) => Freedom::SlidesAlongX,
+            Self::Pad(_) => Freedom::SlidesVertically,
             _ => Freedom::Turns,
         }
     }

@@ -43,7 +43,7 @@ pub(super) fn pieces(assembly: &Assembly, scene: &Scene) -> Result<Vec<Piece>, U
     for body in own.chain(other) {
         let grams = bill::grams(body, assembly);
         let volume = volume(&body.prisms);
-        for (node, prisms) in shares(assembly, scene, body) {
+        for (node, prisms) in split_by_node(assembly, scene, body) {
             let name = match node {
                 Node::Of(_) => body.name.clone(),
                 node if body.kind == Kind::Printed => format!("{} of {}", node.name(), body.name),
@@ -87,7 +87,7 @@ fn spring(assembly: &Assembly, servo: usize) -> Piece {
 }
 
 /// Sorts the layers of a body by the model's body with which they move; mostly there is only one.
-fn shares(assembly: &Assembly, scene: &Scene, body: &Body) -> Vec<(Node, Vec<Prism>)> {
+fn split_by_node(assembly: &Assembly, scene: &Scene, body: &Body) -> Vec<(Node, Vec<Prism>)> {
     let of = |node: Node| vec![(node, body.prisms.clone())];
     match body.mount {
         Mount::Foot(servo) => {

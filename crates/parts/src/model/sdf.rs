@@ -60,7 +60,7 @@ impl Writer<'_> {
         }
         self.xml.close();
         self.xml.close();
-        for look in meshes::looks(self.shown(), node) {
+        for look in meshes::looks(self.visible_pieces(), node) {
             self.xml.open(format!(r#"visual name="{}""#, look.name));
             self.xml.open("geometry");
             self.xml.open("mesh");
@@ -108,8 +108,8 @@ impl Writer<'_> {
         let (kind, axis) = match node.freedom() {
             Freedom::Free => return,
             Freedom::Turns => ("revolute", "0 0 1"),
-            Freedom::Along => ("prismatic", "1 0 0"),
-            Freedom::Upright => ("prismatic", "0 0 1"),
+            Freedom::SlidesAlongX => ("prismatic", "1 0 0"),
+            Freedom::SlidesVertically => ("prismatic", "0 0 1"),
         };
         let (name, parent, child) = (
             self.joint_name(node),
@@ -126,7 +126,8 @@ impl Writer<'_> {
             if let Some(servo) = self.motor_on(node) {
                 let motor = &self.scene.motors.each[servo];
                 self.xml.value("effort", round(motor.stall * MILLI));
-                self.xml.value("velocity", round(motor.rate.to_radians()));
+                self.xml
+                    .value("velocity", round(motor.no_load_speed.to_radians()));
             }
             self.xml.close();
         }

@@ -9,8 +9,8 @@ use std::f64::consts::FRAC_PI_2;
 use lizard_robot::servo::NAMES;
 
 use crate::layers::body::Mount;
-use crate::model::closed::{self, Closed};
-use crate::model::looks::Look;
+use crate::model::closed::{self, LoopJoint};
+use crate::model::looks::Material;
 use crate::model::meshes;
 use crate::model::node::{Freedom, Node};
 use crate::model::text::{MILLI, escaped, metres, round};
@@ -25,7 +25,7 @@ impl Writer<'_> {
         let name = escaped(&self.scene.name);
         self.xml.declaration();
         self.xml.open(format!(r#"robot name="{name}""#));
-        for Look { name, colour } in Look::ALL {
+        for Material { name, colour } in Material::ALL {
             self.xml.open(format!(r#"material name="{name}""#));
             self.xml.leaf(format!(r#"color rgba="{colour}""#));
             self.xml.close();
@@ -53,7 +53,7 @@ impl Writer<'_> {
             r#"inertia ixx="{xx}" iyy="{yy}" izz="{zz}" ixy="{xy}" ixz="{xz}" iyz="{yz}""#
         ));
         self.xml.close();
-        for look in meshes::looks(self.shown(), node) {
+        for look in meshes::looks(self.visible_pieces(), node) {
             self.xml.open("visual");
             self.xml.open("geometry");
             let file = escaped(&format!("{folder}{}", meshes::file(node, look)));
@@ -80,10 +80,10 @@ impl Writer<'_> {
         let range = self.range(node);
         let kind = match (node.freedom(), range) {
             // URDF has no springs, so the feet cannot move on theirs.
-            (Freedom::Free | Freedom::Upright, _) => "fixed",
+            (Freedom::Free | Freedom::SlidesVertically, _) => "fixed",
             (Freedom::Turns, Some(_)) => "revolute",
             (Freedom::Turns, None) => "continuous",
-            (Freedom::Along, _) => "prismatic",
+            (Freedom::SlidesAlongX, _) => "prismatic",
         };
         let place = self.place_on_parent(node);
         let (parent, up, turned) = match self.parent(node) {
@@ -96,7 +96,7 @@ impl Writer<'_> {
         self.write_origin([place.at.x, place.at.y, up], turn);
         if kind != "fixed" {
             let axis = match node.freedom() {
-                Freedom::Along => "1 0 0",
+                Freedom::SlidesAlongX => "1 0 0",
                 _ => "0 0 1",
             };
             self.xml.leaf(format!(r#"axis xyz="{axis}""#));
@@ -104,7 +104,7 @@ impl Writer<'_> {
                 let (effort, rate) = match self.motor_on(node) {
                     Some(servo) => {
                         let motor = &self.scene.motors.each[servo];
-                        (motor.stall * MILLI, motor.rate.to_radians())
+                        (motor.stall * MILLI, motor.no_load_speed.to_radians())
                     }
                     // No motor drives this joint.
                     None => (0.0, 0.0),
@@ -119,7 +119,7 @@ impl Writer<'_> {
                 r#"dynamics damping="{damping}" friction="{friction}""#
             ));
         }
-        if let Some((servo, factor)) = follows(node) {
+        if let Some((servo, factor)) = mimicked_servo(node) {
             let servo = NAMES[servo];
             self.xml
                 .leaf(format!(r#"mimic joint="{servo}" multiplier="{factor}""#));
@@ -142,7 +142,7 @@ impl Writer<'_> {
     }
 
     /// Writes the two frames of a joint that closes a loop, one on each body.
-    fn write_coinciding_frames(&mut self, closed: &Closed) {
+    fn write_coinciding_frames(&mut self, closed: &LoopJoint) {
         let [first, second] = closed.bodies;
         let point = self.place(first).map(closed.at);
         let on_second = self.place(second).unmap(point);
@@ -158,7 +158,7 @@ impl Writer<'_> {
 }
 
 /// The servo whose angle a joint follows, and the factor (1 or -1).
-fn follows(node: Node) -> Option<(usize, i8)> {
+fn mimicked_servo(node: Node) -> Option<(usize, i8)> {
     match node {
         Node::Of(Mount::Crank(servo) | Mount::Follower(servo)) => Some((servo, 1)),
         // These keep their direction on the chassis, so they turn back on a parent that turns.

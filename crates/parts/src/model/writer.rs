@@ -37,7 +37,7 @@ impl<'a> Writer<'a> {
     }
 
     /// The parts whose shapes go into the file.
-    pub(super) fn shown(&self) -> &'a [Piece] {
+    pub(super) fn visible_pieces(&self) -> &'a [Piece] {
         match self.scene.shapes {
             true => self.pieces,
             false => &[],
@@ -70,10 +70,12 @@ impl<'a> Writer<'a> {
     /// The mass of a body.
     pub(super) fn mass(&self, node: Node) -> Inertia {
         let own = self.pieces.iter().filter(|piece| piece.node == node);
-        let drawn = own.fold(Inertia::default(), |sum, piece| sum.and(&piece.inertia));
+        let drawn = own.fold(Inertia::default(), |sum, piece| sum.plus(&piece.inertia));
         match self.parent(node) {
             Some(_) => drawn.scaled(self.scene.limbs),
-            None => self.weighed(&drawn).and(&Inertia::point(self.limbs_lost())),
+            None => self
+                .chassis_mass(&drawn)
+                .plus(&Inertia::point(self.limbs_lost())),
         }
     }
 
@@ -87,14 +89,14 @@ impl<'a> Writer<'a> {
     /// The chassis, adjusted so that the whole robot has the mass and the mass centre of `[body]`. The mass of what
     /// is not drawn, such as wires, is put at the plate's middle; then the chassis is shifted to correct the mass
     /// centre.
-    fn weighed(&self, drawn: &Inertia) -> Inertia {
+    fn chassis_mass(&self, drawn: &Inertia) -> Inertia {
         let body = self.assembly.robot().ground().body;
         let bill = Bill::of(self.assembly, &[], self.neutral);
         let bodies = self.assembly.bodies().iter();
         let parts: f64 = bodies.map(|body| bill::grams(body, self.assembly)).sum();
         // For a robot that is lighter than its parts, the chassis keeps half of its mass.
         let loose = (body.mass - parts).max(-drawn.mass / 2.0);
-        let chassis = drawn.and(&Inertia::point(loose));
+        let chassis = drawn.plus(&Inertia::point(loose));
         let [ahead, left] =
             [0, 1].map(|i| body.mass * body.centre[i] - bill.grams * bill.centre[i]);
         chassis.moved([-left, ahead, 0.0].map(|moment| moment / chassis.mass))

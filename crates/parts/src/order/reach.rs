@@ -149,7 +149,7 @@ impl Bench<'_> {
         let is_beside = |z: [f64; 2]| z[0] > high - TOUCH || z[1] < low + TOUCH;
         let still = Vector::default();
         let meets = |shape: &Shape| room.shape.distance(&shape.placed(&place)) < -TOUCH;
-        let encloses = |hole: &Shape| room.shape.within(&hole.placed(&place), still) > -TOUCH;
+        let encloses = |hole: &Shape| room.shape.depth_in(&hole.placed(&place), still) > -TOUCH;
         let mut prisms = body.prisms.iter().filter(|prism| !is_beside(prism.z));
         prisms.any(|prism| prism.add.iter().any(meets) && !prism.cut.iter().any(encloses))
     }
@@ -166,7 +166,7 @@ impl Bench<'_> {
             false => (low, high),
         };
         let encloses = |hole: &Shape| {
-            let depth = flats.within(&hole.placed(&place), Vector::default());
+            let depth = flats.depth_in(&hole.placed(&place), Vector::default());
             hole.points.len() == 6 && depth > 0.0
         };
         let mut fixed = around.iter().filter(|body| body.mount == nut.mount);
@@ -292,8 +292,8 @@ impl Assembly {
         let Ok(solution) = self.robot().lizard().solve(&neutral) else {
             return Ok(access_poses);
         };
-        let mut left = self.blocked(steps, &solution);
-        if left.is_empty() {
+        let mut unreached = self.blocked(steps, &solution);
+        if unreached.is_empty() {
             return Ok(access_poses);
         }
         for pose in self.poses_near(neutral) {
@@ -304,9 +304,10 @@ impl Assembly {
                 !still.iter().any(is_same_screw)
             };
             let angles: [f64; 4] = pose.pose.into();
-            for blocked in left.extract_if(.., reached) {
-                let of_step =
-                    |aside: &&mut AccessPose| aside.step == blocked.step && aside.pose == angles;
+            for blocked in unreached.extract_if(.., reached) {
+                let of_step = |access_pose: &&mut AccessPose| {
+                    access_pose.step == blocked.step && access_pose.pose == angles
+                };
                 match access_poses.iter_mut().find(of_step) {
                     Some(aside) if aside.screws.contains(&blocked.screw) => {}
                     Some(aside) => aside.screws.push(blocked.screw),
@@ -317,12 +318,12 @@ impl Assembly {
                     }),
                 }
             }
-            if left.is_empty() {
+            if unreached.is_empty() {
                 access_poses.sort_by_key(|aside| aside.step);
                 return Ok(access_poses);
             }
         }
-        Err(left.swap_remove(0))
+        Err(unreached.swap_remove(0))
     }
 
     /// Poses that the guard accepts: first those with one servo turned from neutral, the smallest angle first, and

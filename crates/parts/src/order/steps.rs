@@ -22,7 +22,7 @@ pub struct Step {
     /// Lift of a body in the exploded picture, as a share.
     pub lift: fn(&Body) -> f64,
     /// An extra picture, if any.
-    pub near: ExtraView,
+    pub extra_view: ExtraView,
 }
 
 /// A picture besides the two of the complete robot.
@@ -65,7 +65,7 @@ impl Step {
 }
 
 /// The numbers of the step and of the stage, each from 1, in which a body is added; zeros if no step adds it.
-pub(crate) fn place_in(steps: &[Step], body: &Body) -> (usize, usize) {
+pub(crate) fn step_and_stage(steps: &[Step], body: &Body) -> (usize, usize) {
     for (step, of) in (1..).zip(steps) {
         if let Some(stage) = of.stages.iter().position(|stage| (stage.adds)(body)) {
             return (step, stage + 1);
@@ -106,7 +106,7 @@ fn step(title: &'static str, lift: fn(&Body) -> f64, near: ExtraView, stages: Ve
         words,
         stages,
         lift,
-        near,
+        extra_view: near,
     }
 }
 

@@ -22,14 +22,14 @@ const WORST: usize = 3;
 pub fn worst(assembly: &Assembly, tasks: &[Task]) -> Option<Vec<Task>> {
     let robot = assembly.robot();
     let mut poses: Vec<Solution> = robot.accepted(robot.neutral().into()).into_iter().collect();
-    poses.extend((0..81).filter_map(|direction| edge(robot, direction)));
+    poses.extend((0..81).filter_map(|direction| last_accepted_pose(robot, direction)));
     poses.extend(assembly.poses(STEPS));
     let smallest = |task: &Task| {
         let distances = poses.iter().map(|pose| distance(assembly, task, pose));
         distances.fold(f64::INFINITY, f64::min)
     };
     let all = tasks.iter().map(|task| (smallest(task), task));
-    let mut too_near: Vec<_> = all.filter(|(mm, task)| *mm < task.least()).collect();
+    let mut too_near: Vec<_> = all.filter(|(mm, task)| *mm < task.min_distance()).collect();
     too_near.sort_by(|a, b| a.0.total_cmp(&b.0));
     let too_near = too_near.into_iter().take(WORST);
     let too_near: Vec<_> = too_near.map(|(_, task)| task.clone()).collect();
@@ -41,14 +41,14 @@ fn distance(assembly: &Assembly, task: &Task, pose: &Solution) -> f64 {
     let [a, b] = task.mounts.map(|mount| assembly.place(mount, pose));
     let place = b.seen_from(&a);
     let shape_pairs = task.shape_pairs.iter();
-    let near = shape_pairs.filter(|pair| !pair.is_far(&place, [0.0; 2], task.least()));
-    let distances = near.map(|pair| pair.apart(&place));
+    let near = shape_pairs.filter(|pair| !pair.is_far(&place, [0.0; 2], task.min_distance()));
+    let distances = near.map(|pair| pair.distance(&place));
     distances.fold(f64::INFINITY, f64::min)
 }
 
 /// The last pose that the guard accepts on the line from neutral in one of 81 directions: each servo turns toward
 /// one end of its travel, toward the other, or not at all.
-fn edge(robot: &Robot, direction: u32) -> Option<Solution> {
+fn last_accepted_pose(robot: &Robot, direction: u32) -> Option<Solution> {
     let from: [f64; 4] = robot.neutral().into();
     let ends = [0, 1, 2, 3].map(|servo| {
         let (low, high) = robot.servos()[servo].travel();

@@ -14,12 +14,12 @@ use super::slope::Slope;
 use crate::bodies::joints::Cranks;
 
 /// Relaxation of the margins' limits, as a sine.
-const SINE: f64 = 0.005;
+const SINE_RELAXATION: f64 = 0.005;
 /// Type-2 limit below which the relaxation grows in proportion: the closer two couplers are to alignment, the more
 /// a rounded length turns them.
 const TYPE2: f64 = 0.3;
 /// Relaxation of a slider's stroke and of crossed crank tips, mm.
-const LENGTH: f64 = 0.1;
+const LENGTH_RELAXATION_MM: f64 = 0.1;
 /// Resolution of the ends of a servo's range in [`Guard::end_of`], deg.
 const FINE: f64 = 0.01;
 /// Resolution of the other servo's angle there, deg.
@@ -94,15 +94,15 @@ pub struct Guard<'a> {
 impl<'a> Guard<'a> {
     pub fn new(robot: &'a Robot) -> Self {
         let limits = robot.limits();
-        let sine = SINE * (TYPE2 / limits.type2).max(1.0);
+        let sine = SINE_RELAXATION * (TYPE2 / limits.type2).max(1.0);
         let mut guard = Self {
             robot,
             limits: Limits {
                 type2: limits.type2 - sine,
                 type1: limits.type1 - sine,
                 leg: limits.leg - sine,
-                stroke_min: limits.stroke_min - LENGTH,
-                stroke_max: limits.stroke_max + LENGTH,
+                stroke_min: limits.stroke_min - LENGTH_RELAXATION_MM,
+                stroke_max: limits.stroke_max + LENGTH_RELAXATION_MM,
             },
             ranges: robot.servos().each_ref().map(|servo| {
                 let (low, high) = servo.travel();
@@ -114,7 +114,7 @@ impl<'a> Guard<'a> {
             let ends = End::ALL.map(|end| end.servos());
             for pair in ends.into_iter().chain(Side::ALL.map(|side| side.servos())) {
                 for which in 0..2 {
-                    let [low, high] = [false, true].map(|high| guard.end_of(pair, which, high));
+                    let [low, high] = [false, true].map(|high| guard.range_end(pair, which, high));
                     guard.ranges[pair[which]] = Interval::new(low, high);
                 }
             }
@@ -123,7 +123,7 @@ impl<'a> Guard<'a> {
     }
 
     /// The angle of one servo of a pair beyond which no pose is accepted, at any angle of the other servo.
-    fn end_of(&self, pair: [usize; 2], index: usize, is_high: bool) -> f64 {
+    fn range_end(&self, pair: [usize; 2], index: usize, is_high: bool) -> f64 {
         let sign = if is_high { -1.0 } else { 1.0 };
         let end = |region: &Region<2>| region.middle[index] - sign * region.half[index];
         let whole = Region::of(pair.map(|servo| self.ranges[servo]));
@@ -165,7 +165,7 @@ impl<'a> Guard<'a> {
         let middle = turned(self.robot, servos, region.middle);
         let broken = |(check, bounds, middle): (Check, Slope<N>, f64)| {
             let value = bounds.tighten(middle, &region.half).value;
-            let [low, high] = [value.low, value.high].map(|value| self.broken(check, value));
+            let [low, high] = [value.low, value.high].map(|value| self.broken_limit(check, value));
             low.is_some() && low == high
         };
         let all =
@@ -193,10 +193,10 @@ impl<'a> Guard<'a> {
     }
 
     /// The relaxed limit that a value breaks, if any.
-    fn broken(&self, check: Check, value: f64) -> Option<f64> {
+    fn broken_limit(&self, check: Check, value: f64) -> Option<f64> {
         // The limit of crossed tips is 0 and no field of `Limits`, so the value is shifted instead.
         let slack = match check {
-            Check::UncrossedHead | Check::UncrossedTail => LENGTH,
+            Check::UncrossedHead | Check::UncrossedTail => LENGTH_RELAXATION_MM,
             _ => 0.0,
         };
         self.limits
@@ -206,7 +206,7 @@ impl<'a> Guard<'a> {
 
     /// A pose with the given angles of some servos that the guard accepts with its unrelaxed limits; `None` if the
     /// search finds none.
-    pub fn pose(&self, angles: [Option<f64>; 4]) -> Option<Solution> {
+    pub fn find_pose(&self, angles: [Option<f64>; 4]) -> Option<Solution> {
         const ALL: [usize; 4] = [0, 1, 2, 3];
         let or = |bound_of: fn(&lizard_robot::Servo) -> f64| {
             ALL.map(|servo| angles[servo].unwrap_or(bound_of(&self.robot.servos()[servo])))
@@ -291,8 +291,8 @@ mod tests {
             ];
             for (checks, [within, beyond]) in sines {
                 for &what in checks {
-                    assert_eq!(guard.broken(what, within), None, "{name}: {what}");
-                    assert!(guard.broken(what, beyond).is_some(), "{name}: {what}");
+                    assert_eq!(guard.broken_limit(what, within), None, "{name}: {what}");
+                    assert!(guard.broken_limit(what, beyond).is_some(), "{name}: {what}");
                 }
             }
         }

@@ -9,7 +9,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use lizard_kinematics::{Real, sin_cos};
 
 /// An upper bound of the error of a computed sine, which is 1.5 units in the last place.
-const SINE: f64 = 1e-15;
+const SINE_ERROR: f64 = 1e-15;
 
 /// All numbers from `low` to `high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,12 +33,12 @@ impl Interval {
     }
 
     /// The largest absolute value in the interval.
-    pub fn most(self) -> f64 {
+    pub fn max_abs(self) -> f64 {
         self.low.abs().max(self.high.abs())
     }
 
     /// The intersection with another interval that contains the same number.
-    pub fn and(self, other: Self) -> Self {
+    pub fn intersection(self, other: Self) -> Self {
         Self::new(self.low.max(other.low), self.high.min(other.high))
     }
 
@@ -59,7 +59,7 @@ impl Interval {
         let (sin_a, cos_a) = sin_cos(self.low);
         let (sin_b, cos_b) = sin_cos(self.high);
         let between = |a: f64, b: f64, top: f64, bottom: f64| {
-            let (low, high) = (a.min(b) - SINE, a.max(b) + SINE);
+            let (low, high) = (a.min(b) - SINE_ERROR, a.max(b) + SINE_ERROR);
             let low = if passes(bottom) { -1.0 } else { low };
             Self::new(low, if passes(top) { 1.0 } else { high })
         };

@@ -31,7 +31,7 @@ use crate::bodies::assembly::Assembly;
 use crate::layers::body::Body;
 use crate::proof::clearance::Clearance;
 use guard::Guard;
-pub use search::ENOUGH;
+pub use search::FAR_MM;
 use search::Found;
 use shape_pairs::Task;
 
@@ -174,7 +174,7 @@ impl<'a> Questions<'a> {
     /// Collects the questions about the pairs of bodies that `which` accepts.
     pub fn new(assembly: &'a Assembly, which: impl Fn(&Body, &Body) -> bool) -> Self {
         let guard = Guard::new(assembly.robot());
-        let tasks = Task::all(assembly, &guard, ENOUGH, which);
+        let tasks = Task::all(assembly, &guard, FAR_MM, which);
         let worst = first::worst(assembly, &tasks);
         Self {
             seen: worst.is_some(),
@@ -198,7 +198,7 @@ impl<'a> Questions<'a> {
     /// Answers one question; checks at most `max` regions.
     fn within(&self, index: usize, max: u64) -> Answer {
         let mut task = self.tasks[index].clone();
-        let pinned = match task.meet {
+        let pinned = match task.may_touch {
             true => self.assembly.take_joint(&mut task, &self.joints),
             false => None,
         };
@@ -239,8 +239,8 @@ impl<'a> Questions<'a> {
                 continue;
             };
             proof.regions += regions;
-            let clash = near.clash(task.least());
-            if task.meet {
+            let clash = near.clash(task.min_distance());
+            if task.may_touch {
                 proof.meeting.push(near);
             } else {
                 proof.apart.push(near);

@@ -16,14 +16,14 @@ use crate::bodies::assembly::Assembly;
 use crate::layers::placement::Placement;
 
 /// Distance beyond which parts count as far apart and are not measured, mm.
-pub const ENOUGH: f64 = 2.0;
+pub const FAR_MM: f64 = 2.0;
 /// A bound of the rounding error of a distance, mm.
 const ROUNDING: f64 = 1e-6;
 /// Difference between lower and upper bound at which the search ends: in mm, and as a share of the distance.
 const TOLERANCE: f64 = 0.01;
 const SHARE: f64 = 0.05;
 /// The share for parts designed to touch, for which only the sign of the gap matters.
-const SHARE_MEETING: f64 = 0.5;
+const TOUCHING_SHARE_TOLERANCE: f64 = 0.5;
 /// Half width below which regions are not halved, deg.
 const MIN_HALF_WIDTH: f64 = 0.002;
 /// The largest number of regions checked.
@@ -51,12 +51,12 @@ pub struct Found {
 struct Part<const N: usize> {
     region: Region<N>,
     /// Lower bound of all distances in the region, mm.
-    low: f64,
+    lower_bound: f64,
     /// The index of the pair of shapes with that bound.
     by: u32,
     /// The servo across whose angle the region is to be halved.
     across: usize,
-    alive: Vec<u32>,
+    candidates: Vec<u32>,
 }
 
 /// The least distance of a task's pairs of shapes over all poses that the guard accepts, from at most `max`
@@ -103,22 +103,26 @@ struct Search<'a, const N: usize> {
 
 impl<const N: usize> Search<'_, N> {
     /// Upper bound of the least distance, mm.
-    fn high(&self) -> f64 {
-        self.seen.as_ref().map_or(ENOUGH, |seen| seen.1.min(ENOUGH))
+    fn upper_bound(&self) -> f64 {
+        self.seen.as_ref().map_or(FAR_MM, |seen| seen.1.min(FAR_MM))
     }
 
     fn run(mut self, max: u64) -> Found {
         let all_poses = Region::of(self.servos.map(|servo| self.guard.ranges[servo]));
         let all: Vec<u32> = (0..self.task.shape_pairs.len() as u32).collect();
-        let share = if self.task.meet { SHARE_MEETING } else { SHARE };
+        let share = if self.task.may_touch {
+            TOUCHING_SHARE_TOLERANCE
+        } else {
+            SHARE
+        };
         // The part with the least bound comes first. Regions break ties, so the order is always the same.
-        let key = |part: &Part<N>| (ordered(part.low), part.region.middle.map(ordered));
-        let first = self.look(all_poses, &all).into_iter();
+        let key = |part: &Part<N>| (ordered(part.lower_bound), part.region.middle.map(ordered));
+        let first = self.bound_region(all_poses, &all).into_iter();
         let mut parts: BTreeMap<_, _> = first.map(|part| (key(&part), part)).collect();
         while let Some((_, part)) = parts.pop_first() {
-            let high = self.high();
-            if part.low >= high - TOLERANCE - share * high.abs() {
-                return self.found(part.low.min(high), None);
+            let high = self.upper_bound();
+            if part.lower_bound >= high - TOLERANCE - share * high.abs() {
+                return self.found(part.lower_bound.min(high), None);
             }
             let max = if high < 0.0 {
                 MAX_REGIONS_OVERLAPPING
@@ -126,14 +130,14 @@ impl<const N: usize> Search<'_, N> {
                 max
             };
             if part.region.half.iter().all(|half| *half < MIN_HALF_WIDTH) || self.regions >= max {
-                return self.found(part.low, Some(&part));
+                return self.found(part.lower_bound, Some(&part));
             }
             for half in part.region.halves(part.across) {
-                let half = self.look(half, &part.alive);
+                let half = self.bound_region(half, &part.candidates);
                 parts.extend(half.map(|part| (key(&part), part)));
             }
         }
-        let high = self.high();
+        let high = self.upper_bound();
         self.found(high, None)
     }
 
@@ -160,7 +164,7 @@ impl<const N: usize> Search<'_, N> {
 
     /// Bounds a region's distances. Returns `None` if no pair can be nearer than the least distance found so far,
     /// or if the guard accepts no pose.
-    fn look(&mut self, region: Region<N>, alive: &[u32]) -> Option<Part<N>> {
+    fn bound_region(&mut self, region: Region<N>, alive: &[u32]) -> Option<Part<N>> {
         self.regions += 1;
         let (bounds, middle) = self.guard.cranks(&self.servos, &region)?;
         // The placements of both mounts: at the region's middle, and bounds for the whole region.
@@ -178,10 +182,10 @@ impl<const N: usize> Search<'_, N> {
         });
         let mut part = Part {
             region,
-            low: f64::INFINITY,
+            lower_bound: f64::INFINITY,
             by: 0,
             across: across(&bounds, &region),
-            alive: Vec::new(),
+            candidates: Vec::new(),
         };
         let closed = place.at.is_finite() && place.turn.is_finite();
         let mut nearest = (f64::INFINITY, 0);
@@ -189,30 +193,30 @@ impl<const N: usize> Search<'_, N> {
             let shape_pair = &self.task.shape_pairs[index as usize];
             let low = if !closed {
                 f64::NEG_INFINITY
-            } else if shape_pair.is_far(&place, strays, self.high()) {
+            } else if shape_pair.is_far(&place, strays, self.upper_bound()) {
                 continue;
             } else {
-                let apart = shape_pair.apart(&place);
+                let apart = shape_pair.distance(&place);
                 if apart < nearest.0 {
                     nearest = (apart, index);
                 }
-                let low = shape_pair.apart_within(&place, &bounds, &region);
+                let low = shape_pair.distance_bound(&place, &bounds, &region);
                 if low.is_nan() { f64::NEG_INFINITY } else { low }
             };
-            if low < self.high() {
-                part.alive.push(index);
-                if low < part.low {
-                    (part.low, part.by) = (low, index);
+            if low < self.upper_bound() {
+                part.candidates.push(index);
+                if low < part.lower_bound {
+                    (part.lower_bound, part.by) = (low, index);
                 }
             }
         }
-        if nearest.0 < self.high() - TOLERANCE / 4.0
-            && let Some(pose) = self.guard.pose(self.angles(&region))
+        if nearest.0 < self.upper_bound() - TOLERANCE / 4.0
+            && let Some(pose) = self.guard.find_pose(self.angles(&region))
         {
             self.seen = Some((pose, nearest.0));
             self.by = nearest.1;
         }
-        (!part.alive.is_empty()).then_some(part)
+        (!part.candidates.is_empty()).then_some(part)
     }
 }
 
@@ -242,7 +246,7 @@ fn across<const N: usize>(bounds: &Placement<Slope<N>>, region: &Region<N>) -> u
         let half = region.half[servo];
         numbers.iter().fold(0.0, |sum, number| {
             // Without a finite bound, the widest angle is halved.
-            let strays = number.slope[servo].most() * half;
+            let strays = number.slope[servo].max_abs() * half;
             sum + if strays.is_finite() {
                 strays
             } else {

@@ -42,14 +42,14 @@ pub struct ShapePair {
 pub struct Task {
     pub mounts: [Mount; 2],
     /// True if these are pairs that are designed to touch.
-    pub meet: bool,
+    pub may_touch: bool,
     pub shape_pairs: Vec<ShapePair>,
 }
 
 impl Task {
     /// Least distance that the task's pairs must keep, mm.
-    pub fn least(&self) -> f64 {
-        if self.meet { -TOUCH } else { MIN_GAP_MM }
+    pub fn min_distance(&self) -> f64 {
+        if self.may_touch { -TOUCH } else { MIN_GAP_MM }
     }
 
     /// The servos on which the relative placement of the two mounts depends.
@@ -77,7 +77,7 @@ impl Task {
         let bodies = assembly.bodies();
         for (i, a) in bodies.iter().enumerate() {
             for (j, b) in bodies.iter().enumerate().skip(i + 1) {
-                let is_apart = || sweep::apart(&rectangles[i], &rectangles[j], within);
+                let is_apart = || sweep::are_apart(&rectangles[i], &rectangles[j], within);
                 if a.mount == b.mount || !which(a, b) || is_apart() {
                     continue;
                 }
@@ -88,12 +88,12 @@ impl Task {
                     continue;
                 }
                 let mounts = [a.mount, b.mount];
-                let is_same = |task: &&mut Self| task.mounts == mounts && task.meet == meet;
+                let is_same = |task: &&mut Self| task.mounts == mounts && task.may_touch == meet;
                 match tasks.iter_mut().find(is_same) {
                     Some(task) => task.shape_pairs.extend(shape_pairs),
                     None => tasks.push(Self {
                         mounts,
-                        meet,
+                        may_touch: meet,
                         shape_pairs,
                     }),
                 }
@@ -177,7 +177,7 @@ impl ShapePair {
             let disc = Shape::disc(middle, radius);
             let within = holes
                 .iter()
-                .map(|hole| disc.within(hole, Vector::default()));
+                .map(|hole| disc.depth_in(hole, Vector::default()));
             within.fold(disc.distance(other), f64::max)
         };
         let (first, second) = (&self.first, &self.second);
@@ -206,20 +206,20 @@ impl ShapePair {
     }
 
     /// The distance of the two, mm, with the second's frame placed in the first's; negative if they overlap.
-    pub fn apart(&self, place: &Placement) -> f64 {
-        self.at_least(place, |_| Vector::default())
+    pub fn distance(&self, place: &Placement) -> f64 {
+        self.lower_bound(place, |_| Vector::default())
     }
 
     /// Lower bound of their distance in a region, from their placement at its middle and the largest motion of each
     /// point from there.
-    pub fn apart_within<const N: usize>(
+    pub fn distance_bound<const N: usize>(
         &self,
         place: &Placement,
         bounds: &Placement<Slope<N>>,
         region: &Region<N>,
     ) -> f64 {
         const ANYWHERE: Vector = Vector::new(f64::INFINITY, f64::INFINITY);
-        self.at_least(place, |shape| {
+        self.lower_bound(place, |shape| {
             let strays = shape.points.iter().map(|&point| {
                 let position = bounds.map(point);
                 Vector::new(
@@ -234,7 +234,7 @@ impl ShapePair {
         })
     }
 
-    fn at_least(&self, place: &Placement, largest_change: impl Fn(&Shape) -> Vector) -> f64 {
+    fn lower_bound(&self, place: &Placement, largest_change: impl Fn(&Shape) -> Vector) -> f64 {
         let second = self.second.placed(place);
         let moves = largest_change(&self.second);
         let mut flat = self.first.distance(&second) - moves.length();
@@ -243,10 +243,13 @@ impl ShapePair {
         }
         for hole in &self.around_first {
             // A hole that moves has the same effect as a pin that moves.
-            flat = flat.max(self.first.within(&hole.placed(place), largest_change(hole)));
+            flat = flat.max(
+                self.first
+                    .depth_in(&hole.placed(place), largest_change(hole)),
+            );
         }
         for hole in &self.around_second {
-            flat = flat.max(second.within(hole, moves));
+            flat = flat.max(second.depth_in(hole, moves));
         }
         flat
     }

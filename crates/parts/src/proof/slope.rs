@@ -30,7 +30,7 @@ impl<const N: usize> Slope<N> {
     /// Largest change from its value at the middle angles, if each servo may be up to `half` degrees from there.
     pub fn largest_change(&self, half: &[f64; N]) -> f64 {
         let slopes = self.slope.iter().zip(half);
-        slopes.fold(0.0, |sum, (slope, half)| sum + slope.most() * half)
+        slopes.fold(0.0, |sum, (slope, half)| sum + slope.max_abs() * half)
     }
 
     /// Tightens the bounds of the number by its value at the middle and its largest change from there. Bounds from
@@ -44,7 +44,7 @@ impl<const N: usize> Slope<N> {
             return self;
         }
         Self {
-            value: self.value.and(Interval::new(low, high)),
+            value: self.value.intersection(Interval::new(low, high)),
             ..self
         }
     }

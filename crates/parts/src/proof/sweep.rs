@@ -18,8 +18,8 @@ pub type Rectangle = [Interval; 2];
 
 /// The rectangle of each body, in the order of [`Assembly::bodies`].
 pub fn all(assembly: &Assembly, guard: &Guard) -> Vec<Rectangle> {
-    const NOWHERE: Interval = Interval::new(f64::INFINITY, f64::NEG_INFINITY);
-    let mut rectangles = vec![[NOWHERE; 2]; assembly.bodies().len()];
+    const EMPTY: Interval = Interval::new(f64::INFINITY, f64::NEG_INFINITY);
+    let mut rectangles = vec![[EMPTY; 2]; assembly.bodies().len()];
     let mut mounts: Vec<Mount> = Vec::new();
     for body in assembly.bodies() {
         if mounts.contains(&body.mount) {
@@ -43,7 +43,7 @@ pub fn all(assembly: &Assembly, guard: &Guard) -> Vec<Rectangle> {
 }
 
 /// True if two rectangles are at least `by` mm apart.
-pub fn apart(a: &Rectangle, b: &Rectangle, by: f64) -> bool {
+pub fn are_apart(a: &Rectangle, b: &Rectangle, by: f64) -> bool {
     a.iter()
         .zip(b)
         .any(|(a, b)| a.low - b.high >= by || b.low - a.high >= by)

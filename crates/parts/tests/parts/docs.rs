@@ -1,6 +1,6 @@
 //! Tests that the pages about parts agree with the code: values, shopping list, steps.
 
-use lizard_parts::{Bill, places, steps, to_buy};
+use lizard_parts::{Bill, buying_table, places, steps};
 use lizard_robot::{Parts, Robot};
 
 use crate::{assembly, neutral};
@@ -71,13 +71,13 @@ fn quoted(path: &str, start: &str, expected: &str) {
 fn the_pages_quote_the_lists_of_the_bill() {
     let assembly = assembly("paper", "[leg.drive]\nkind = \"rigid\"");
     let bill = Bill::of(&assembly, &assembly.parts(), &neutral(&assembly));
-    let bought = format!("{}\n{}\n", to_buy(&bill.bought), bill.prices());
+    let bought = format!("{}\n{}\n", buying_table(&bill.bought), bill.prices());
     for (path, mark, list) in [
         ("docs/quickstart.md", "the list of `lizard parts`", &bought),
         (
             "docs/quickstart.md",
             "the list for a radio",
-            &to_buy(&bill.radio),
+            &buying_table(&bill.radio),
         ),
         (
             "docs/build.md",

@@ -81,7 +81,7 @@ fn a_rigid_strut_is_as_long_as_the_other_from_hole_to_hole_and_within_it() {
             let (inner, outer) = (rigid.z(), slotted.z());
             assert!(outer[0] <= inner[0] && inner[1] <= outer[1], "{name}");
             for prism in &slotted.prisms {
-                let air = rigid.prisms[0].add[0].within(&prism.add[0], Default::default());
+                let air = rigid.prisms[0].add[0].depth_in(&prism.add[0], Default::default());
                 assert!(air > -1e-9, "{name}: {air}");
             }
         }
@@ -106,7 +106,10 @@ fn the_foot_stands_where_the_contact_model_has_it() {
         let assembly = assembly(name);
         let robot = assembly.robot();
         for pose in assembly.poses(7) {
-            let feet = robot.ground().feet.at(robot.sweeps(pose.pose.into()));
+            let feet = robot
+                .ground()
+                .feet
+                .positions(robot.sweeps(pose.pose.into()));
             for (servo, [forward, left]) in feet.into_iter().enumerate() {
                 let foot = Vector::new(-left, forward);
                 let leg = &assembly.layout().legs[servo];

@@ -104,12 +104,15 @@ fn a_robot_that_does_not_fit_is_refused_with_one_message() {
         ("[parts.spring]\nlength = 40.0", [spring, ""]),
         ("[parts]\nthickness = 15.0", ["do not make one body", ""]),
     ] {
-        let refused = slotted("paper", parts).fits().expect_err(parts).to_string();
+        let refused = slotted("paper", parts)
+            .check_fit()
+            .expect_err(parts)
+            .to_string();
         for words in words {
             assert!(refused.contains(words), "{refused}");
         }
     }
     for name in ROBOTS {
-        assert_eq!(assembly(name, "").fits(), Ok(()), "{name}");
+        assert_eq!(assembly(name, "").check_fit(), Ok(()), "{name}");
     }
 }

@@ -64,7 +64,7 @@ fn each_foot_stands_where_the_contact_model_has_it_and_a_long_one_is_lower() {
         let text = written(&robot, |scene| scene.long = [0.0, 0.6, 0.0, -0.3]);
         let document = Document::parse(&text).expect("well formed");
         let all = bodies(&document);
-        let feet = robot.ground().feet.at([0.0; 4]);
+        let feet = robot.ground().feet.positions([0.0; 4]);
         for (servo, long) in [0.0, 0.6, 0.0, -0.3].into_iter().enumerate() {
             let (placed, foot) = all[&format!("foot {}", LEGS[servo])];
             let mut geoms = foot.children();

@@ -134,7 +134,7 @@ fn a_screw_that_nothing_lets_pass_refuses_the_robot() {
 #[test]
 fn parts_that_move_together_are_not_in_one_place() {
     for name in ROBOTS {
-        assert_eq!(slotted(name, "").measures_fit(), Ok(()), "{name}");
+        assert_eq!(slotted(name, "").check_measures(), Ok(()), "{name}");
     }
     // The head of a standoff's screw is moved into the boss of the board's screw.
     let near = slotted("paper", "").altered(|bodies| {
@@ -144,7 +144,7 @@ fn parts_that_move_together_are_not_in_one_place() {
             heads.for_each(|shape| shape.points[0].y -= 1.0);
         }
     });
-    let refused = near.measures_fit().expect_err("they overlap").to_string();
+    let refused = near.check_measures().expect_err("they overlap").to_string();
     let both = "deck and screw standoff 1 above, which move together, overlap by 0.5";
     assert!(refused.contains(both), "{refused}");
 }

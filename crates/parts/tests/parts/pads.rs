@@ -87,7 +87,7 @@ fn a_strip_that_its_pad_cannot_carry_is_refused() {
     for (width, fits) in [(4.0, false), (5.0, true), (14.5, true), (15.5, false)] {
         let robot = assembly("paper", &format!("[parts]\nstrip = {width:.1}"));
         let refusal = robot
-            .measures_fit()
+            .check_measures()
             .err()
             .map(|refused| refused.to_string());
         assert_eq!(refusal.is_none(), fits, "{width}");

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use lizard_kinematics::{Side, Solution, Vector};
-use lizard_parts::{Assembly, Body, Clash, ENOUGH, MIN_GAP_MM, Mount, Shape};
+use lizard_parts::{Assembly, Body, Clash, FAR_MM, MIN_GAP_MM, Mount, Shape};
 use lizard_robot::Robot;
 
 use crate::{GRAIN, ROBOTS, assembly, body, slotted};
@@ -62,7 +62,7 @@ fn assert_bounds_hold(name: &str) {
             assert!((low..=high).contains(&angle), "{name}: {angle}");
         }
     }
-    for near in assembly.nearest(poses, ENOUGH - 0.2) {
+    for near in assembly.nearest(poses, FAR_MM - 0.2) {
         let of = mounts(&near.first, &near.second);
         let mut apart = proof.apart.iter();
         let known = apart.find(|known| mounts(&known.first, &known.second) == of);
@@ -311,11 +311,11 @@ fn a_struts_screw_has_air_in_its_slot_all_the_way() {
     for step in 0..=10 {
         let travel = 5.0 * f64::from(step) / 10.0;
         let pin = Shape::disc(Vector::new(leg.strut_length + travel, 0.0), screw);
-        let air = pin.within(slot, Vector::default());
+        let air = pin.depth_in(slot, Vector::default());
         assert!((air - 0.1).abs() < 1e-9, "{travel}: {air}");
     }
     let beyond = Shape::disc(Vector::new(leg.strut_length + 5.2, 0.0), screw);
-    assert!(beyond.within(slot, Vector::default()) < 0.0);
+    assert!(beyond.depth_in(slot, Vector::default()) < 0.0);
 }
 
 #[test]

@@ -111,7 +111,7 @@ pub(crate) fn check(
         ..Audit::NONE
     };
     let mut worst: Option<(f64, Violation)> = None;
-    let mut held: Option<(f64, Check)> = None;
+    let mut guard_stop: Option<(f64, Check)> = None;
     let at = |phase: f64| format!("at phase {phase:.4}");
     for phase in phases(&tables.gaits[index]) {
         let sweeps = tables.sweeps(index, phase);
@@ -120,7 +120,7 @@ pub(crate) fn check(
         let phase = f64::from(phase) / PHASES;
         check_travels(robot, angles, phase)?;
         if let Some(hazard) = Clearance::of(firmware, &sweeps).hazard(firmware) {
-            held.get_or_insert((phase, condition(&hazard)));
+            guard_stop.get_or_insert((phase, condition(&hazard)));
         }
         let solution = robot.lizard.solve(&angles.into());
         let solution = solution.map_err(|fault| Broken {
@@ -141,7 +141,7 @@ pub(crate) fn check(
             problem: format!("{violation} {}", at(phase)),
         });
     }
-    if let Some((phase, what)) = held {
+    if let Some((phase, what)) = guard_stop {
         return Err(Broken {
             meaning: consequence(what),
             problem: format!(

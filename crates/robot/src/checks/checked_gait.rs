@@ -162,15 +162,15 @@ impl CheckedGait {
     /// The parts that depend on ties are determined with rigid legs, because ties are between pads.
     pub fn predict(&self, ground: &Ground) -> Prediction {
         let known = ground.rigid().predict(self.cycle(COARSE));
-        known.keep_known(self.walked(ground).travel)
+        known.keep_known(self.simulate_cycle(ground).travel)
     }
 
     /// Simulates one cycle on this ground, even if its result depends on ties. If legs lag, it is the second cycle.
-    pub fn walked(&self, ground: &Ground) -> Walked {
+    pub fn simulate_cycle(&self, ground: &Ground) -> Walked {
         let mut walker = Walker::new(*ground, self.sweeps(self.phase(0.0)));
         let mut steps = STEPS;
         if ground.drive.lags() {
-            steps = SPRUNG;
+            steps = LAGGING_STEPS;
             self.cycle(steps).for_each(|sweeps| {
                 walker.step(sweeps);
             });
@@ -230,7 +230,7 @@ impl CheckedGait {
 const STEPS: usize = 1000;
 /// Steps in a cycle with legs that lag, which takes longer to compute; four times as many change no result by 0.05
 /// mm.
-const SPRUNG: usize = 250;
+const LAGGING_STEPS: usize = 250;
 /// Steps in a cycle for detecting ties, which takes longer to compute.
 const COARSE: usize = 250;
 

@@ -12,7 +12,7 @@ use crate::checks::checked_gait::CheckedGait;
 /// Duration of a simulation step, s.
 const STEP: f64 = 0.0025;
 /// Share of the line from which a servo has little reserve: play, cold gears or a thin wire may use it up.
-pub const TIGHT: f64 = 0.9;
+pub const HIGH_LINE_SHARE: f64 = 0.9;
 /// Factor on torque and speed with which a motor follows every gait exactly.
 const STRONG: f64 = 1e6;
 /// Iterations of the search for a pace.
@@ -48,10 +48,10 @@ impl Effort {
         let strong = Motors {
             each: motors.each.map(|motor| Motor {
                 stall: motor.stall * STRONG,
-                rate: motor.rate * STRONG,
-                full: motor.full * STRONG,
+                no_load_speed: motor.no_load_speed * STRONG,
+                full_torque_error: motor.full_torque_error * STRONG,
                 spin_up: 0.0,
-                idle: 0.0,
+                half_dead_band: 0.0,
             }),
             ..*motors
         };
@@ -70,7 +70,7 @@ impl Effort {
             let now = walker.servos();
             for (i, (motor, samples)) in servos.iter_mut().enumerate() {
                 let rate = (now[i] - before[i]) / seconds;
-                let torque = motor.stall / motor.full * (target[i] - now[i]);
+                let torque = motor.stall / motor.full_torque_error * (target[i] - now[i]);
                 let bend = (next[i] - 2.0 * target[i] + last[i]).to_radians();
                 samples.push(Sample {
                     load: torque - motor.damping() * rate.to_radians(),

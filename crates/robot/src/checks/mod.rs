@@ -12,4 +12,4 @@ mod effort;
 pub use accuracy::TableError;
 pub use audit::{Audit, LeastMargin, Peak};
 pub use checked_gait::{CheckedGait, Walked};
-pub use effort::{Effort, TIGHT};
+pub use effort::{Effort, HIGH_LINE_SHARE};

@@ -136,7 +136,7 @@ fn with_value(
 ///
 /// # Errors
 /// Fails if the key is in a table that is written on one line.
-pub fn without(text: &str, key: &str) -> Result<String, NoSuchKey> {
+pub fn without_key(text: &str, key: &str) -> Result<String, NoSuchKey> {
     let missing = || NoSuchKey(key.to_string());
     let document = DeTable::parse(text).map_err(|_| missing())?;
     let (_, name) = key.rsplit_once('.').ok_or_else(missing)?;
@@ -351,11 +351,11 @@ mod tests {
     #[test]
     fn a_number_is_removed_with_its_line() {
         const DRIVE: &str = "[leg.drive]\nkind = \"strut\"\nforce = 3.0 # N\nplay = 0.5\n";
-        let rest = without(DRIVE, "leg.drive.force").expect("it may be left out");
+        let rest = without_key(DRIVE, "leg.drive.force").expect("it may be left out");
         assert_eq!(rest, "[leg.drive]\nkind = \"strut\"\nplay = 0.5\n");
-        assert_eq!(without(&rest, "leg.drive.force"), Ok(rest.clone()));
+        assert_eq!(without_key(&rest, "leg.drive.force"), Ok(rest.clone()));
         let one = "[leg]\ndrive = { kind = \"strut\", force = 3.0 }\n";
-        assert!(without(one, "leg.drive.force").is_err());
+        assert!(without_key(one, "leg.drive.force").is_err());
     }
 
     #[test]

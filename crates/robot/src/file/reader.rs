@@ -190,7 +190,7 @@ impl<'a> Section<'a> {
     }
 
     /// Refuses a number that is not less than that of another key of this table.
-    pub fn less(&self, name: &str, value: f64, other: &str, limit: f64) -> Checked<()> {
+    pub fn require_less(&self, name: &str, value: f64, other: &str, limit: f64) -> Checked<()> {
         if value < limit {
             return Ok(());
         }

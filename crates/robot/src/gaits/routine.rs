@@ -25,7 +25,7 @@ pub struct Routine {
     steps: Vec<Step>,
     rounds: u16,
     /// The index of the record at which each round except the first begins.
-    again: u16,
+    repeat_from: u16,
 }
 
 impl Routine {
@@ -63,7 +63,7 @@ impl Routine {
             name_length: self.name.len() as u16,
             ..Record::routine(first as u16, self.steps.len() as u16, self.rounds)
         };
-        record.channels[3].offset = self.again;
+        record.channels[3].offset = self.repeat_from;
         record
     }
 }
@@ -125,7 +125,7 @@ fn read_routine(
     }
     Ok(Routine {
         name: name.to_string(),
-        again: steps[..from as usize - 1].concat().len() as u16,
+        repeat_from: steps[..from as usize - 1].concat().len() as u16,
         steps: steps.concat(),
         rounds: read_rounds(&table)?,
     })

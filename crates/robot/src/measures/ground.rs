@@ -31,7 +31,7 @@ fn read_body(root: &Section, feet: &Feet) -> Checked<Body> {
         false => Body::DEFAULT.centre,
     };
     let body = Body { mass, centre };
-    let loads = Stance::LEVEL.loads(&body, feet.at([0.0; 4]));
+    let loads = Stance::LEVEL.loads(&body, feet.positions([0.0; 4]));
     match loads.iter().position(|load| *load <= 0.0) {
         Some(foot) => {
             let foot = LEGS[foot];

@@ -3,7 +3,7 @@
 use lizard_core::numbers::gaits::Input;
 
 use crate::file::{Checked, Section};
-use crate::measures::servo::{self, Servo, free_pin};
+use crate::measures::servo::{self, Servo, read_pin};
 use crate::measures::supply::Supplies;
 
 /// The names of the inputs.
@@ -40,7 +40,7 @@ impl Inputs {
                 return Ok(None);
             }
             let table = section.section(name, &["pin"])?;
-            let pin = free_pin(&table)?;
+            let pin = read_pin(&table)?;
             if let Some((_, owner)) = used_pins.iter().find(|(other, _)| *other == pin) {
                 let message = format!("is \"{}\", which {owner} already has", table.text("pin")?);
                 return Err(table.fault("pin", message));

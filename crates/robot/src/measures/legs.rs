@@ -15,7 +15,7 @@ use lizard_contact::{FRONT, Feet, LEFT, Point};
 use lizard_kinematics::{Lizard, Vector};
 
 use crate::measures::parts::Parts;
-use crate::measures::servo::HAND;
+use crate::measures::servo::ARM_SIDE;
 
 /// The dimensions of a leg that are the same in every pose, seen from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,7 +68,7 @@ impl LegPlan {
     ) -> Self {
         let point = |[forward, left]: Point| Vector::new(-left, forward);
         let hip = point(feet.hips()[servo]);
-        let reach = point(feet.at([0.0; 4])[servo]) - hip;
+        let reach = point(feet.positions([0.0; 4])[servo]) - hip;
         let shaft = lizard.shafts()[servo];
         let driven = shaft + driven(servo, parts);
         let set = reach.angle() - neutral;
@@ -94,7 +94,7 @@ impl LegPlan {
             foot: Vector::new(foot.dot(along), along.cross(foot)),
             strut: strut * (1.0 / strut.length()),
             strut_length: strut.length(),
-            anchor: Vector::direction(-HAND[servo] * angle) * radius,
+            anchor: Vector::direction(-ARM_SIDE[servo] * angle) * radius,
         }
     }
 
@@ -161,7 +161,7 @@ mod tests {
     fn a_foot_is_where_the_contact_model_has_it() {
         for (name, robot) in all() {
             for sweep in [-25.0, 0.0, 17.0] {
-                let feet = robot.ground().feet.at([sweep; 4]);
+                let feet = robot.ground().feet.positions([sweep; 4]);
                 for (servo, leg) in robot.legs().iter().enumerate() {
                     let angle = robot.servos()[servo].neutral + FORWARD[servo] * sweep;
                     let [forward, left] = feet[servo];

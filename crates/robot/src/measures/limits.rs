@@ -31,7 +31,7 @@ pub(crate) fn read(root: &Section) -> Checked<(Limits, SpeedLimits)> {
         stroke_min: section.number("stroke_min", -LONGEST_BAR, LONGEST_BAR, "mm")?,
         stroke_max: section.number("stroke_max", -LONGEST_BAR, LONGEST_BAR, "mm")?,
     };
-    section.less(
+    section.require_less(
         "stroke_min",
         limits.stroke_min,
         "stroke_max",

@@ -31,7 +31,7 @@ pub use motor::ServoType;
 pub use parts::{Horn, Pad, Parts, Screw, ServoBody};
 pub use plate::Plate;
 pub use servo::{Servo, SpeedLimits};
-pub(crate) use strut::{hung, of_coil};
+pub(crate) use strut::{mounted_spring_length, of_coil};
 pub use supply::{FUSE, Rail, SWITCH, Supplies, healthy_rail_mv};
 
 use lizard_contact::{Ground, Joints};

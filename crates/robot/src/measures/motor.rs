@@ -8,7 +8,7 @@ use lizard_contact::{GRAVITY, Joints, Motor};
 use lizard_kinematics::Lizard;
 
 use crate::file::{Checked, Section, hint};
-use crate::measures::servo::{HAND, Servo};
+use crate::measures::servo::{ARM_SIDE, Servo};
 
 /// N mm per kg cm.
 const N_MM: f64 = 10.0 * GRAVITY;
@@ -111,10 +111,10 @@ impl ServoType {
     pub fn motor(&self, volts: f64, us_per_degree: f64) -> Motor {
         let motor = Motor {
             stall: self.stall_kg_cm * N_MM,
-            rate: 60.0 / self.s_per_60_deg,
+            no_load_speed: 60.0 / self.s_per_60_deg,
             spin_up: self.spin_up_ms / 1000.0,
-            full: self.full_torque_deg,
-            idle: self.dead_band_us / 2.0 / us_per_degree.abs(),
+            full_torque_error: self.full_torque_deg,
+            half_dead_band: self.dead_band_us / 2.0 / us_per_degree.abs(),
         };
         motor.at_supply(volts / self.at_volts)
     }
@@ -144,7 +144,9 @@ pub(crate) fn joints(root: &Section, lizard: &Lizard, servos: &[Servo; 4]) -> Ch
         drag: 0.0,
         slider: 0.0,
         arms: std::array::from_fn(|i| {
-            let (sin, cos) = (servos[i].neutral + HAND[i] * 90.0).to_radians().sin_cos();
+            let (sin, cos) = (servos[i].neutral + ARM_SIDE[i] * 90.0)
+                .to_radians()
+                .sin_cos();
             // Forward is y of the chassis frame; left is -x.
             [lengths[i] * sin, -lengths[i] * cos]
         }),
@@ -177,8 +179,11 @@ mod tests {
         let motors = robot("").expect("right").motors();
         for motor in motors.each {
             // 1.8 kg cm; 60 deg in 0.12 s; half of a dead band of 10 us, at 10 us per deg.
-            assert!((motor.stall - 176.5197).abs() < 1e-9 && motor.rate == 500.0);
-            assert_eq!((motor.idle, motor.full, motor.spin_up), (0.5, 3.0, 0.02));
+            assert!((motor.stall - 176.5197).abs() < 1e-9 && motor.no_load_speed == 500.0);
+            assert_eq!(
+                (motor.half_dead_band, motor.full_torque_error, motor.spin_up),
+                (0.5, 3.0, 0.02)
+            );
         }
         assert_eq!((motors.joints.drag, motors.joints.slider), (0.0, 0.0));
     }
@@ -189,12 +194,15 @@ mod tests {
                     full_torque_deg = 1.5\ndead_band_us = 2\n[joints]\nslider = 0.3";
         let motors = robot(keys).expect("right").motors();
         let motor = motors.each[3];
-        assert!((motor.rate - 300.0 * 6.0 / 4.8).abs() < 1e-9);
+        assert!((motor.no_load_speed - 300.0 * 6.0 / 4.8).abs() < 1e-9);
         assert!(
             (motor.stall - 176.5197 * 6.0 / 4.8).abs() < 1e-9,
             "of the model"
         );
-        assert_eq!((motor.idle, motor.full, motor.spin_up), (0.1, 1.5, 0.005));
+        assert_eq!(
+            (motor.half_dead_band, motor.full_torque_error, motor.spin_up),
+            (0.1, 1.5, 0.005)
+        );
         assert_eq!((motors.joints.drag, motors.joints.slider), (0.0, 0.3));
     }
 

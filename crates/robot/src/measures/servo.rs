@@ -13,7 +13,7 @@ pub const NAMES: [&str; 4] = ["A1", "A2", "A3", "A4"];
 pub const LEGS: [&str; 4] = ["LF", "RF", "RH", "LH"];
 
 /// The side of a servo's link where the slider's arm is: 1 if counter-clockwise from its crank, else -1.
-pub const HAND: [f64; 4] = {
+pub const ARM_SIDE: [f64; 4] = {
     let (left, right) = (Side::Left.sign(), Side::Right.sign());
     [left, right, -right, -left]
 };
@@ -100,7 +100,7 @@ pub(crate) fn pin(name: &str) -> Option<u8> {
 }
 
 /// Reads the key `pin`, whose value must be a name that [`pin`] accepts.
-pub(crate) fn free_pin(section: &Section) -> Checked<u8> {
+pub(crate) fn read_pin(section: &Section) -> Checked<u8> {
     let text = section.text("pin")?;
     pin(text).ok_or_else(|| {
         let message = format!(
@@ -157,7 +157,7 @@ pub(crate) fn read(root: &Section) -> Checked<[Servo; 4]> {
 
 fn read_servo(section: &Section) -> Checked<Servo> {
     let width = |name| section.number(name, WIDTHS.0, WIDTHS.1, "us");
-    let pin = free_pin(section)?;
+    let pin = read_pin(section)?;
     let us_per_degree = section.number("us_per_degree", -f64::MAX, f64::MAX, "us")?;
     if !(GAINS.0..=GAINS.1).contains(&us_per_degree.abs()) {
         let message = format!(
@@ -174,8 +174,8 @@ fn read_servo(section: &Section) -> Checked<Servo> {
         min_us: width("min_us")?,
         max_us: width("max_us")?,
     };
-    section.less("min_us", servo.min_us, "neutral_us", servo.neutral_us)?;
-    section.less("neutral_us", servo.neutral_us, "max_us", servo.max_us)?;
+    section.require_less("min_us", servo.min_us, "neutral_us", servo.neutral_us)?;
+    section.require_less("neutral_us", servo.neutral_us, "max_us", servo.max_us)?;
     Ok(servo)
 }
 
@@ -217,8 +217,8 @@ mod tests {
         let crank = Vector::new(1.0, 0.0);
         for side in Side::ALL {
             let [front, rear] = side.servos();
-            assert_eq!(side.front_arm(crank), Vector::new(0.0, HAND[front]));
-            assert_eq!(side.rear_arm(crank), Vector::new(0.0, HAND[rear]));
+            assert_eq!(side.front_arm(crank), Vector::new(0.0, ARM_SIDE[front]));
+            assert_eq!(side.rear_arm(crank), Vector::new(0.0, ARM_SIDE[rear]));
         }
     }
 }

@@ -54,12 +54,12 @@ pub struct Rail {
     /// Thresholds of the rail, V.
     pub thresholds: [f64; 3],
     /// True if the first threshold is left out, so that it follows from the servos.
-    pub by_servos: bool,
+    pub follows_servos: bool,
 }
 
 /// Smallest distance between the first threshold and the one below it, and between the supply and the first
 /// threshold, V: more than the 0.15 V by which a supply must recover before the robot is fast again.
-const APART: f64 = 0.25;
+const MIN_THRESHOLD_GAP: f64 = 0.25;
 
 /// The pace at a low supply if the servos' line is not known there, percent.
 const DEFAULT_PACE: u8 = 50;
@@ -71,11 +71,11 @@ impl Rail {
     /// would use more than `share` of the servos' torque-speed line. `line` is the share that it uses at `volts`.
     pub(crate) fn slow_down(&mut self, line: f64, share: f64, volts: f64) {
         let [slow, stop, _] = &mut self.thresholds;
-        let min = *stop + APART;
+        let min = *stop + MIN_THRESHOLD_GAP;
         // Rounded to hundredths. The threshold stays below the supply itself, or the robot would always be slow.
         let slow_volts = (100.0 * volts * line / share).round() / 100.0;
-        if self.by_servos {
-            *slow = slow_volts.min(volts - APART).max(min);
+        if self.follows_servos {
+            *slow = slow_volts.min(volts - MIN_THRESHOLD_GAP).max(min);
         }
     }
 }
@@ -170,7 +170,7 @@ fn read_rail(supply: &Section, servos: &[Servo; 4]) -> Checked<Option<Rail>> {
         pin,
         ratio,
         thresholds: read_thresholds(&section, (1.0, 5.0 * ratio), defaults)?,
-        by_servos,
+        follows_servos: by_servos,
     }))
 }
 
@@ -187,8 +187,8 @@ fn read_thresholds(
         voltage("stop", stop)?,
         voltage("rest", rest)?,
     ];
-    section.less("rest", rest, "stop", stop)?;
-    section.less("stop", stop, "slow", slow)?;
+    section.require_less("rest", rest, "stop", stop)?;
+    section.require_less("stop", stop, "slow", slow)?;
     Ok([slow, stop, rest])
 }
 
@@ -270,7 +270,7 @@ mod tests {
             used.fold(0.0, f64::max)
         };
         // On this floor the servos would allow slightly less than stop + 0.25 V, so this minimum is the threshold.
-        let wanted = (4.8 * largest(1.0) / crate::TIGHT).max(4.25);
+        let wanted = (4.8 * largest(1.0) / crate::HIGH_LINE_SHARE).max(4.25);
         assert!((sg90 - wanted).abs() < 0.01, "{sg90} {wanted}");
         // More friction requires a higher threshold; a given threshold stays.
         let rough = slow("", "", "0.8");
@@ -282,7 +282,7 @@ mod tests {
             effort.line_share(1.0, by_line)
         });
         let used = used.fold(0.0, f64::max);
-        assert!((used - crate::TIGHT).abs() < 0.005, "{used}");
+        assert!((used - crate::HIGH_LINE_SHARE).abs() < 0.005, "{used}");
         assert_eq!(slow("", "slow = 4.3", "0.8"), 4.3);
         // If a servo exceeds its line even at its own supply, the threshold still stays below that supply.
         assert_eq!(slow("model = \"copy\"", "", "1.2"), 4.55);
@@ -306,7 +306,9 @@ mod tests {
         let is_followed = |percent: &u8| {
             let line =
                 |effort: &crate::Effort| effort.line_share(f64::from(*percent) / 100.0, stop / own);
-            efforts.iter().all(|effort| line(effort) <= crate::TIGHT)
+            efforts
+                .iter()
+                .all(|effort| line(effort) <= crate::HIGH_LINE_SHARE)
         };
         let found = (10..=100).rev().find(is_followed).unwrap_or(10);
         [robot.firmware().slow_pace(), found]

@@ -155,7 +155,7 @@ const ALL: [Assumption; 21] = assumptions! {
 };
 
 /// The plausible range of the assumption with this description.
-pub fn plausible(words: &str) -> Option<[f64; 2]> {
+pub fn plausible_range(words: &str) -> Option<[f64; 2]> {
     let assumption = ALL.iter().find(|assumption| assumption.words == words);
     assumption.map(|assumption| assumption.range)
 }

@@ -11,7 +11,7 @@ mod servos;
 mod spring_cost;
 pub mod verdict;
 
-pub use assumptions::{Assumptions, Extreme, MovementRange, plausible};
+pub use assumptions::{Assumptions, Extreme, MovementRange, plausible_range};
 pub use report::{Report, Row, UNDECIDED, WITHOUT_CONTACTS};
 pub use round::Round;
 pub use sensitivity::Sensitivity;

@@ -5,7 +5,7 @@ use std::fmt;
 use lizard_contact::Prediction;
 use lizard_core::numbers::section::SPACE;
 
-use crate::checks::{Audit, CheckedGait, Effort, TIGHT, TableError};
+use crate::checks::{Audit, CheckedGait, Effort, HIGH_LINE_SHARE, TableError};
 use crate::measures::servo::NAMES;
 use crate::reports::round::Round;
 use crate::reports::spring_cost::SpringCost;
@@ -243,7 +243,7 @@ impl fmt::Display for Report {
                 slow.join(", ")
             )?;
         }
-        for row in self.rows.iter().filter(|row| row.line >= TIGHT) {
+        for row in self.rows.iter().filter(|row| row.line >= HIGH_LINE_SHARE) {
             write!(f, "\n{}", tight(&row.name, row.line))?;
         }
         if self.searches_long {

@@ -77,13 +77,13 @@ fn driven(robot: &Robot, sweeps: &[[f64; 4]]) -> Travel {
     let (motors, start) = (robot.motors(), sweeps[0]);
     let end = sweeps.last().copied().unwrap_or(start);
     let mut walker = Walker::new(*robot.ground(), start);
-    for sweeps in sweeps[1..].iter().chain(&[end; SETTLES]) {
+    for sweeps in sweeps[1..].iter().chain(&[end; SETTLING_FRAMES]) {
         walker.drive(sweeps.map(Some), 1.0 / FRAMES_PER_SECOND, &motors);
     }
     walker.place().travel()
 }
 
 /// Frames after which a servo that lags behind its last pulse is at rest.
-const SETTLES: usize = 25;
+const SETTLING_FRAMES: usize = 25;
 /// Frames after power-on until the robot stands.
 const STANDS: u32 = 60;

@@ -26,7 +26,7 @@ impl SpringCost {
         if !ground.drive.lags() {
             return None;
         }
-        let walked = gait.walked(ground);
+        let walked = gait.simulate_cycle(ground);
         let movement = gait.predict(&ground.rigid());
         let part = |lagging: f64, rigid: Option<f64>, smallest: f64| {
             rigid

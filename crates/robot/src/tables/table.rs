@@ -72,7 +72,7 @@ impl Tables {
             Channel {
                 wave: part.wave as u16,
                 // A shift of one full cycle wraps to 0.
-                offset: (part.ahead.rem_euclid(1.0) * PHASES).round() as u32 as u16,
+                offset: (part.lead.rem_euclid(1.0) * PHASES).round() as u32 as u16,
                 gain: (gain * ONE_Q14).round() as i16,
             }
         };
@@ -116,7 +116,7 @@ fn increment(gait: &Gait) -> i32 {
 struct Part {
     wave: usize,
     /// Its lead over the stored waveform, cycles.
-    ahead: f64,
+    lead: f64,
     /// Amplitude, deg, positive counter-clockwise.
     amplitude: f64,
 }
@@ -138,7 +138,7 @@ impl WaveformBank {
         if amplitude == 0.0 || waveform == Waveform::Still {
             return Some(Part {
                 wave: 0,
-                ahead: 0.0,
+                lead: 0.0,
                 amplitude: 0.0,
             });
         }
@@ -151,7 +151,7 @@ impl WaveformBank {
             let rotation = find_rotation(known, &samples, SAME_DEG / amplitude.abs())?;
             Some(Part {
                 wave,
-                ahead: offset + rotation as f64 / SAMPLES as f64,
+                lead: offset + rotation as f64 / SAMPLES as f64,
                 amplitude,
             })
         });
@@ -159,7 +159,7 @@ impl WaveformBank {
             self.samples.push(samples);
             Part {
                 wave: self.samples.len() - 1,
-                ahead: offset,
+                lead: offset,
                 amplitude,
             }
         }))
@@ -213,7 +213,7 @@ fn find_rotation(
 mod tests {
 
     use crate::Robot;
-    use crate::testing::{all, body, robot, with};
+    use crate::testing::{all, robot, text_before_gaits, with};
 
     fn waves(robot: &Robot) -> usize {
         robot.firmware().waves().len()
@@ -349,7 +349,8 @@ mod tests {
     #[test]
     fn a_robot_that_only_stands_has_a_table_of_zeros() {
         let stand = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
-        let robot = Robot::parse(&format!("{}{stand}", body("unequal"))).expect("it stands");
+        let robot =
+            Robot::parse(&format!("{}{stand}", text_before_gaits("unequal"))).expect("it stands");
         assert_eq!(waves(&robot), 1);
         let stand = &robot.gaits()[0];
         assert!(!stand.moves());

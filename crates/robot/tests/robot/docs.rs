@@ -1,7 +1,8 @@
 //! Comparison of the tables in docs/gaits.md, docs/limits.md and docs/twin.md with computed ones.
 
 use lizard_robot::{
-    Assumptions, Drive, Effort, Ground, Kind, Report, Robot, Sensitivity, ServoTable, TIGHT, Walked,
+    Assumptions, Drive, Effort, Ground, HIGH_LINE_SHARE, Kind, Report, Robot, Sensitivity,
+    ServoTable, Walked,
 };
 
 use crate::{gait, paper};
@@ -80,7 +81,10 @@ fn slotted(name: &str, figure: fn(Walked) -> f64) -> String {
             drive: Drive { kind, play: 0.0 },
             ..*paper().ground()
         };
-        format!(" {:.1} |", figure(gait(paper(), name).walked(&ground)))
+        format!(
+            " {:.1} |",
+            figure(gait(paper(), name).simulate_cycle(&ground))
+        )
     });
     cells.concat()
 }
@@ -134,7 +138,7 @@ fn slow_pace(file: &str) -> String {
         let pace = f64::from(*percent) / 100.0;
         efforts
             .iter()
-            .all(|(_, effort)| line(effort, pace) <= TIGHT)
+            .all(|(_, effort)| line(effort, pace) <= HIGH_LINE_SHARE)
     };
     let percent = (10..=100).rev().find(is_within).expect("a pace");
     if robot.supplies().rail.is_some() {

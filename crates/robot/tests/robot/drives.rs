@@ -5,7 +5,7 @@ use lizard_robot::{Body, Drive, Ground, Kind, Report, SpringCost, Walker};
 
 use crate::{STUDIED, cycle_movement, gait, paper, paper_with};
 
-fn on(drive: Drive) -> Ground {
+fn ground_with(drive: Drive) -> Ground {
     Ground {
         drive,
         body: STUDIED,
@@ -15,14 +15,14 @@ fn on(drive: Drive) -> Ground {
 
 /// Slotted struts with a spring of this force and the rate of the paper's coil.
 fn strut(force: f64) -> Ground {
-    on(Drive {
+    ground_with(Drive {
         kind: Kind::Strut(paper().strut_with(force, 0.395)),
         play: 0.0,
     })
 }
 
 fn play(play: f64) -> Ground {
-    on(Drive {
+    ground_with(Drive {
         play,
         ..Drive::RIGID
     })
@@ -71,7 +71,7 @@ fn from_two_newton_on_a_strut_walks_as_a_bar() {
 fn gaits_lose_to_play_what_another_solver_found() {
     for (size, expected) in [(1.0, [33.4, 24.4, 14.1]), (2.0, [31.5, 21.2, 12.8])] {
         for (name, expected) in ["walk", "trot", "left"].into_iter().zip(expected) {
-            let walked = gait(paper(), name).walked(&play(size));
+            let walked = gait(paper(), name).simulate_cycle(&play(size));
             let moved = cycle_movement(gait(paper(), name), &play(size));
             assert!((moved - expected).abs() < 0.25, "{size} deg {name} {moved}");
             assert!((walked.lag - size).abs() < 1e-3, "{walked:?}");
@@ -175,7 +175,7 @@ fn the_pull_that_is_needed_grows_with_mass_and_friction() {
             },
             ..*paper().ground()
         };
-        gait(paper(), "walk").walked(&ground)
+        gait(paper(), "walk").simulate_cycle(&ground)
     };
     let (one, two) = (walked(280.0, 0.7, 0.5), walked(420.0, 1.4, 1.5));
     assert!(one.lag > 3.0 && (one.lag - two.lag).abs() < 1e-6);

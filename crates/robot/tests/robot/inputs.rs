@@ -8,13 +8,13 @@ use super::{paper, paper_text};
 const INPUTS: &str = "[input.button]\npin = \"A1\"\n[input.nose]\npin = \"A2\"\n";
 
 /// Reads the paper's robot with additional tables.
-fn with(tables: &str) -> Result<Robot, Error> {
+fn paper_with_tables(tables: &str) -> Result<Robot, Error> {
     Robot::parse(&format!("{}\n\n{tables}", paper_text().trim_end()))
 }
 
 /// Returns the error message for these tables, with its line number counted from the first of them.
 fn refusal(tables: &str) -> String {
-    let error = with(tables).map(|_| ()).expect_err(tables);
+    let error = paper_with_tables(tables).map(|_| ()).expect_err(tables);
     let before = paper_text().trim_end().lines().count() + 1;
     let line = error.line.expect("a line") - before;
     error.to_string().replacen(
@@ -26,7 +26,8 @@ fn refusal(tables: &str) -> String {
 
 /// Returns kind, gait and count of each record of a routine that has only this step.
 fn records(step: &str) -> Vec<(u8, u8, u16)> {
-    let robot = with(&format!("{INPUTS}[routine.one]\nsteps = [\"{step}\"]")).expect(step);
+    let robot =
+        paper_with_tables(&format!("{INPUTS}[routine.one]\nsteps = [\"{step}\"]")).expect(step);
     let [routine] = robot.routines() else {
         panic!("one routine");
     };
@@ -83,7 +84,7 @@ fn a_step_with_an_input_is_two_records_the_input_first() {
 
 #[test]
 fn inputs_that_no_step_uses_change_no_byte_of_the_section() {
-    let robot = with(INPUTS).expect("inputs");
+    let robot = paper_with_tables(INPUTS).expect("inputs");
     assert_eq!(robot.section(), paper().section());
     let each: Vec<_> = robot.inputs().each().collect();
     assert_eq!(each, [("button", 15), ("nose", 16)]);
@@ -131,7 +132,8 @@ fn every_free_pin_is_an_input_and_a_taken_one_is_refused_with_its_owner() {
         "D2", "D4", "D5", "D6", "D7", "D8", "D12", "A0", "A1", "A2", "A4", "A5",
     ];
     for pin in free {
-        let robot = with(&format!("[input.nose]\npin = \"{pin}\"\n{rail}")).expect(pin);
+        let robot =
+            paper_with_tables(&format!("[input.nose]\npin = \"{pin}\"\n{rail}")).expect(pin);
         assert!(robot.inputs().nose.is_some() && robot.inputs().button.is_none());
     }
     let twice = refusal("[input.button]\npin = \"A1\"\n[input.nose]\npin = \"A1\"");
@@ -209,13 +211,13 @@ fn a_mistake_in_an_input_or_its_step_is_reported_with_its_line_and_its_step() {
 #[test]
 fn a_round_takes_a_frame_for_a_wait_and_a_cycle_for_a_way_without_an_end() {
     let round = |steps: &str| {
-        let robot = with(&format!(
+        let robot = paper_with_tables(&format!(
             "{INPUTS}[routine.one]\nsteps = [{steps}]\nrepeat = \"for ever\""
         ));
         let robot = robot.expect(steps);
         Round::of(&robot, &robot.routines()[0])
     };
-    let text = |tables: &str| Report::of(&with(tables).expect(tables)).to_string();
+    let text = |tables: &str| Report::of(&paper_with_tables(tables).expect(tables)).to_string();
     let patrol = format!("{INPUTS}[routine.one]\nsteps = [\"wait button\"]");
     assert!(text(&patrol).contains(WITHOUT_CONTACTS));
     assert!(!text(INPUTS).contains(WITHOUT_CONTACTS));
@@ -239,7 +241,7 @@ fn the_patrol_of_the_docs_waits_once_and_then_repeats_from_its_second_step() {
         .find(|block| block.contains("[input."))
         .expect("it is there");
     assert!(include_str!("../../../../docs/quickstart.md").contains(patrol));
-    let robot = with(patrol).expect("a robot");
+    let robot = paper_with_tables(patrol).expect("a robot");
     let [routine] = robot.routines() else {
         panic!("one routine");
     };

@@ -39,7 +39,7 @@ const STUDIED: Body = Body {
 
 /// Returns the movement of one cycle: forward in mm, or in deg for a gait that turns on the spot.
 fn cycle_movement(gait: &CheckedGait, ground: &Ground) -> f64 {
-    let travel = gait.walked(ground).travel;
+    let travel = gait.simulate_cycle(ground).travel;
     match gait.name() {
         "left" | "right" => travel.turn,
         _ => travel.forward,

@@ -16,7 +16,7 @@ fn files() -> Vec<PathBuf> {
     files
 }
 
-fn each(test: impl Fn(&str, &Robot)) {
+fn for_each_robot(test: impl Fn(&str, &Robot)) {
     static ROBOTS: LazyLock<Vec<(String, Robot)>> = LazyLock::new(|| {
         let load = |file: PathBuf| {
             let robot = Robot::load(&file).unwrap_or_else(|error| panic!("{error}"));
@@ -29,8 +29,8 @@ fn each(test: impl Fn(&str, &Robot)) {
     }
 }
 
-fn each_gait(test: impl Fn(&str, &Robot, &CheckedGait)) {
-    each(|file, robot| {
+fn for_each_gait(test: impl Fn(&str, &Robot, &CheckedGait)) {
+    for_each_robot(|file, robot| {
         for gait in robot.gaits() {
             test(file, robot, gait);
         }
@@ -39,7 +39,7 @@ fn each_gait(test: impl Fn(&str, &Robot, &CheckedGait)) {
 
 #[test]
 fn every_table_is_within_half_a_degree_at_every_phase() {
-    each_gait(|file, _, gait| {
+    for_each_gait(|file, _, gait| {
         let error = gait.table_error();
         assert!(error.max <= 0.50, "{file} {}: {error:?}", gait.name());
         assert!(error.rms <= error.max);
@@ -48,7 +48,7 @@ fn every_table_is_within_half_a_degree_at_every_phase() {
 
 #[test]
 fn every_gait_is_safe_between_its_samples_too() {
-    each_gait(|file, robot, gait| {
+    for_each_gait(|file, robot, gait| {
         for phase in (0..=u16::MAX).step_by(7) {
             let pose = gait.table_angles(phase).into();
             let solution = robot.lizard().solve(&pose).expect("it closes");
@@ -63,7 +63,7 @@ fn every_gait_is_safe_between_its_samples_too() {
 
 #[test]
 fn an_audit_has_the_least_margins_of_all_phases() {
-    each_gait(|file, robot, gait| {
+    for_each_gait(|file, robot, gait| {
         let audit = gait.audit();
         let mut least_margins = [f64::INFINITY; 3];
         let (mut smallest, mut largest) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -104,7 +104,7 @@ fn an_audit_has_the_least_margins_of_all_phases() {
 
 #[test]
 fn the_fastest_frame_is_the_fastest_in_either_direction() {
-    each_gait(|file, robot, gait| {
+    for_each_gait(|file, robot, gait| {
         let frame = 0.02 / gait.period();
         let mut largest = 0.0f64;
         for i in 0..1000 {
@@ -126,7 +126,7 @@ fn the_fastest_frame_is_the_fastest_in_either_direction() {
 
 #[test]
 fn stand_is_the_neutral_pose_to_the_last_step() {
-    each(|file, robot| {
+    for_each_robot(|file, robot| {
         let stand = &robot.gaits()[0];
         assert_eq!((stand.name(), stand.moves()), ("stand", false), "{file}");
         for phase in 0..=u16::MAX {
@@ -138,7 +138,7 @@ fn stand_is_the_neutral_pose_to_the_last_step() {
 
 #[test]
 fn every_gait_has_its_place_its_name_and_its_travel() {
-    each(|file, robot| {
+    for_each_robot(|file, robot| {
         for (index, gait) in robot.gaits().iter().enumerate() {
             assert_eq!(gait.index(), index);
             let spoken = gait.name().replace('-', " ");
@@ -161,7 +161,7 @@ fn every_gait_has_its_place_its_name_and_its_travel() {
 
 #[test]
 fn a_robots_sweeps_are_zero_where_it_stands_and_positive_ahead() {
-    each(|file, robot| {
+    for_each_robot(|file, robot| {
         let neutral: [f64; 4] = robot.neutral().into();
         assert_eq!(robot.sweeps(neutral), [0.0; 4], "{file}");
         // theta1 and theta5 fall, theta4 and theta8 rise, as the feet go forward.

@@ -6,13 +6,13 @@ use lizard_robot::{Error, Robot, Round};
 use super::{paper, paper_text};
 
 /// Reads the paper's robot with additional tables.
-fn with(tables: &str) -> Result<Robot, Error> {
+fn paper_with_tables(tables: &str) -> Result<Robot, Error> {
     Robot::parse(&format!("{}\n\n{tables}", paper_text().trim_end()))
 }
 
 /// Returns the error message for a routine `patrol` with these lines.
 fn refusal(lines: &str) -> String {
-    let refused = with(&format!("[routine.patrol]\n{lines}"));
+    let refused = paper_with_tables(&format!("[routine.patrol]\n{lines}"));
     refused.map(|_| ()).expect_err(lines).to_string()
 }
 
@@ -24,7 +24,7 @@ repeat = 3
 
 #[test]
 fn a_routine_is_its_steps_and_how_often_they_are_repeated() {
-    let robot = with(PATROL).expect("a routine");
+    let robot = paper_with_tables(PATROL).expect("a routine");
     let routine = robot.routine("patrol").expect("it is there");
     let gait = |name: &str| robot.gait(name).expect(name).index() as u8;
     let steps = [
@@ -39,7 +39,7 @@ fn a_routine_is_its_steps_and_how_often_they_are_repeated() {
     assert_eq!(routine.rounds(), Some(3));
     let rounds = |repeat: &str| {
         let text = format!("[routine.one]\nsteps = [\"walk 1\"]\n{repeat}");
-        with(&text).expect(repeat).routines()[0].rounds()
+        paper_with_tables(&text).expect(repeat).routines()[0].rounds()
     };
     assert_eq!(rounds(""), Some(1));
     assert_eq!(rounds("repeat = 999"), Some(999));
@@ -50,7 +50,7 @@ fn a_routine_is_its_steps_and_how_often_they_are_repeated() {
 fn names_of_two_words_and_times_with_decimals_are_read() {
     let text = r#"[routine.about-face]
 steps = ["arc left 2", "arc-left 2.5 s", "  arc  left   999 ", "rest 0.02 s", "stand 999 s"]"#;
-    let robot = with(text).expect("a routine");
+    let robot = paper_with_tables(text).expect("a routine");
     let arc = robot.gait("arc-left").expect("it is there").index() as u8;
     let steps: Vec<_> = robot
         .routine("about face")
@@ -73,7 +73,8 @@ steps = ["arc left 2", "arc-left 2.5 s", "  arc  left   999 ", "rest 0.02 s", "s
 
 #[test]
 fn the_core_finds_the_routines_of_the_file_after_the_unchanged_gaits() {
-    let robot = with(&format!("{PATROL}[routine.other]\nsteps = [\"right 2\"]\n")).expect("two");
+    let robot = paper_with_tables(&format!("{PATROL}[routine.other]\nsteps = [\"right 2\"]\n"))
+        .expect("two");
     let core = robot.core();
     let gaits = robot.gaits().len();
     assert_eq!(core.gait_count(), gaits + 2);
@@ -105,7 +106,7 @@ fn eight_routines_of_sixteen_steps_fit_beside_the_papers_gaits_and_their_maps() 
     let tables: String = (0..8)
         .map(|n| format!("[routine.a-long-routine-{n}]\nsteps = [{steps}]\n"))
         .collect();
-    let robot = with(&tables).expect("they fit");
+    let robot = paper_with_tables(&tables).expect("they fit");
     assert!(robot.has_room_for_maps());
     let bytes = robot.section().len() - paper().section().len();
     assert_eq!(bytes, 8 * (32 + 16 * 4 + "a-long-routine-0".len()));
@@ -230,7 +231,7 @@ fn an_existing_or_invalid_name_is_refused() {
             "routine.Patrol is not a routine name: it must be lower-case letters, digits and dashes, a letter first",
         ),
     ] {
-        let actual = with(&format!("[routine.{name}]\nsteps = [\"walk 1\"]"));
+        let actual = paper_with_tables(&format!("[routine.{name}]\nsteps = [\"walk 1\"]"));
         let actual = actual.map(|_| ()).expect_err(name).to_string();
         assert!(actual.ends_with(message), "{actual}");
     }
@@ -238,7 +239,7 @@ fn an_existing_or_invalid_name_is_refused() {
 
 #[test]
 fn a_round_takes_its_cycles_and_changes_and_leads_as_far_as_its_gaits() {
-    let robot = with(
+    let robot = paper_with_tables(
         "[routine.ahead]\nsteps = [\"walk 10\"]\n[routine.about]\nsteps = [\"left 5\", \"stand 2 s\"]\nrepeat = \"for ever\"\n[routine.gaze]\nsteps = [\"look 1\"]",
     )
     .expect("three");

@@ -16,7 +16,7 @@ const GAITS: [&str; 8] = [
 ];
 
 /// Returns the paper's ground with feet of this stiffness, the front left one too long by `twist`.
-fn on(stiffness: f64, twist: f64) -> Ground {
+fn ground_with(stiffness: f64, twist: f64) -> Ground {
     Ground {
         stance: Stance {
             stiffness,
@@ -64,7 +64,7 @@ fn on_soft_feet_a_foot_a_millimetre_too_long_costs_no_gait_a_tenth() {
         let gait = gait(paper(), name);
         let level = cycle_movement(gait, paper().ground());
         for twist in [1.0, -1.0] {
-            let share = cycle_movement(gait, &on(stiffness, twist)) / level;
+            let share = cycle_movement(gait, &ground_with(stiffness, twist)) / level;
             assert!((0.97..1.03).contains(&share), "{name} {twist} {share}");
         }
     }
@@ -74,30 +74,30 @@ fn on_soft_feet_a_foot_a_millimetre_too_long_costs_no_gait_a_tenth() {
 fn on_a_leaf_of_three_newton_a_millimetre_half_a_millimetre_stops_the_robot() {
     let share = |name: &str| {
         let gait = gait(paper(), name);
-        cycle_movement(gait, &on(3.3, 0.6)) / cycle_movement(gait, paper().ground())
+        cycle_movement(gait, &ground_with(3.3, 0.6)) / cycle_movement(gait, paper().ground())
     };
     assert!(share("walk") < 0.25 && share("crawl") < 0.15 && share("left") < 0.25);
     // Feet can be adjusted to a fifth of a millimetre; such an error does not matter.
     let gait = gait(paper(), "walk");
-    assert!(cycle_movement(gait, &on(3.3, 0.2)) > 33.5);
+    assert!(cycle_movement(gait, &ground_with(3.3, 0.2)) > 33.5);
 }
 
 #[test]
 fn the_cost_depends_on_stiffness_times_length_over_weight() {
     let gait = gait(paper(), "walk");
-    let one = cycle_movement(gait, &on(2.0, 0.6));
-    assert!((cycle_movement(gait, &on(0.5, 2.4)) - one).abs() < 1e-6);
+    let one = cycle_movement(gait, &ground_with(2.0, 0.6));
+    assert!((cycle_movement(gait, &ground_with(0.5, 2.4)) - one).abs() < 1e-6);
     let heavy = Ground {
         body: Body {
             mass: 614.0,
             ..Body::DEFAULT
         },
-        ..on(2.0, 1.2)
+        ..ground_with(2.0, 1.2)
     };
     assert!((cycle_movement(gait, &heavy) - one).abs() < 1e-6);
     // If all feet are level and equally stiff, their stiffness does not matter.
     assert_eq!(
-        cycle_movement(gait, &on(50.0, 0.0)),
+        cycle_movement(gait, &ground_with(50.0, 0.0)),
         cycle_movement(gait, paper().ground())
     );
 }

@@ -41,7 +41,7 @@ fn a_foreign_interrupt_waits_until_interrupts_are_on_and_takes_its_cycles() {
         for at in 300..600 {
             let mut uno = Uno::with_image(image.clone(), fidelity);
             uno.run_until_cycle(at);
-            uno.hold(5000);
+            uno.block_interrupts(5000);
             uno.run_until_cycle(10_000);
             let widths = widths(&uno);
             assert!(widths.iter().all(|width| *width == widths[0]), "at {at}");
@@ -64,7 +64,7 @@ fn a_foreign_interrupt_ends_a_sleep_and_is_served_before_the_chips_own() {
             for (;;) asm volatile (\"sleep\");
         }");
     for mut uno in both_after(9_000, &image) {
-        uno.hold(3_000);
+        uno.block_interrupts(3_000);
         uno.run_until_cycle(35_000);
         let marks = marks(&uno);
         // The first interrupt is about 2000 cycles late, the others are on time.
@@ -89,7 +89,7 @@ fn bytes_that_arrive_while_nothing_is_executed_are_lost_as_on_the_chip() {
     uno.send(b"abcdefgh");
     // Three bytes have arrived. During the next five, the chip keeps two in its buffer and the last one.
     uno.run_until_cycle(1000 + 3 * 1389 + 100);
-    uno.hold(5 * 1389);
+    uno.block_interrupts(5 * 1389);
     uno.run_until_cycle(30_000);
     assert_eq!(marks(&uno), b"abcdeh");
     assert_eq!(uno.overruns(), 2);

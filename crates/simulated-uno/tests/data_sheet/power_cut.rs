@@ -134,7 +134,7 @@ fn a_power_cut_that_is_taken_back_does_not_come() {
     let mut uno = two_bytes();
     uno.cut_power(PowerCut::AtCycle(60_000), 0);
     uno.cut_power(PowerCut::InErase(1), 0);
-    uno.keep_power();
+    uno.cancel_power_cut();
     assert_eq!(*uno.run_ms(20), State::Alive);
     assert_eq!(uno.eeprom()[..2], [0x35, 0x5c]);
 }

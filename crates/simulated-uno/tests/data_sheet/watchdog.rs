@@ -42,7 +42,7 @@ fn run_once(body: &str, ms: u64) -> Uno {
 }
 
 /// Returns the number of cycles from a write to GPIOR0 to the first reset by the watchdog.
-fn to_the_bite(uno: &Uno, mark: usize) -> u64 {
+fn cycles_to_reset(uno: &Uno, mark: usize) -> u64 {
     watchdog_resets(uno)[0] - uno.marks()[mark].cycle
 }
 
@@ -60,7 +60,7 @@ fn every_prescaler_gives_the_time_out_of_table_11_2() {
         let expected = (2048u64 << wdp) * 125;
         let uno = after(expected + CYCLES_PER_MS, program(&body));
         assert_eq!(watchdog_resets(&uno).len(), 1, "WDP = {wdp}");
-        let elapsed = to_the_bite(&uno, 0);
+        let elapsed = cycles_to_reset(&uno, 0);
         assert!((expected..expected + 12).contains(&elapsed), "{elapsed}");
     }
 }
@@ -93,7 +93,7 @@ fn the_time_runs_from_the_last_wdr_or_from_where_the_watchdog_was_switched_on() 
             0..20,
         ),
     ] {
-        let elapsed = to_the_bite(&run_once(body, ms), mark);
+        let elapsed = cycles_to_reset(&run_once(body, ms), mark);
         assert!(expected.contains(&elapsed), "{message}: {elapsed}");
     }
 }
@@ -200,7 +200,7 @@ fn interrupt_and_reset_mode_warns_first_and_then_resets() {
             set(0x48); sei(); for (;;) {} }";
     let uno = run(body, 40);
     assert_eq!(marks(&uno), [0x08]);
-    let elapsed = to_the_bite(&uno, 0);
+    let elapsed = cycles_to_reset(&uno, 0);
     assert!(
         (MIN_TIMEOUT - 100..MIN_TIMEOUT).contains(&elapsed),
         "{elapsed}"
@@ -215,7 +215,7 @@ fn an_interrupt_that_is_not_executed_before_the_next_time_out_ends_in_a_reset() 
         if (MCUSR & 8) { MCUSR = 0; set(0); for (;;) {} }
         GPIOR0 = 1; set(0x48); for (;;) {} }";
     let uno = run(body, 40);
-    let elapsed = to_the_bite(&uno, 0);
+    let elapsed = cycles_to_reset(&uno, 0);
     assert!(
         (2 * MIN_TIMEOUT..2 * MIN_TIMEOUT + 12).contains(&elapsed),
         "{elapsed}"

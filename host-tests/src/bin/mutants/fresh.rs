@@ -60,7 +60,7 @@ pub fn is_firmware(file: &str) -> bool {
 }
 
 /// True if a mistake in the file can move a servo or change a saved value.
-pub fn moves(file: &str) -> bool {
+pub fn affects_motion(file: &str) -> bool {
     let name = file.strip_prefix("crates/core/src/").unwrap_or(file);
     !TEXT.iter().any(|part| name.starts_with(part))
 }
@@ -80,7 +80,7 @@ pub fn all(file: &str, text: &str) -> Vec<Mutant> {
             let before = lines[first..n].iter().copied();
             mutants.push(Mutant {
                 file: file.into(),
-                wrong: format!("line {}: {wrong}", n + 1),
+                description: format!("line {}: {wrong}", n + 1),
                 package: file
                     .starts_with("crates/core/")
                     .then(|| "lizard-core".into()),
@@ -156,7 +156,7 @@ pub fn shuffle(mut mutants: Vec<Mutant>, seed: u64) -> Vec<Mutant> {
 }
 
 /// Returns the Wilson interval of a rate at 95 %: it contains the true rate in 19 of 20 samples.
-pub fn wilson(noticed: usize, tried: usize) -> (f64, f64) {
+pub fn wilson_interval(noticed: usize, tried: usize) -> (f64, f64) {
     const Z: f64 = 1.96;
     let n = tried.max(1) as f64;
     let rate = noticed as f64 / n;
@@ -176,7 +176,7 @@ mod tests {
             "fn f() {\n    a.b(1); // 2 < 3\n    if x < 17 && y {}\n}\n#[cfg(test)]\n1 < 2\n";
         let mut made: Vec<String> = all("crates/core/src/motion/frames.rs", text)
             .iter()
-            .map(|mutant| mutant.make(text).expect("it is there once"))
+            .map(|mutant| mutant.apply(text).expect("it is there once"))
             .collect();
         made.sort();
         let with = |old, new| text.replacen(old, new, 1);
@@ -196,7 +196,7 @@ mod tests {
         let text = "one\na = b + c;\ntwo\na = b + c;\n";
         let made: Vec<String> = all("crates/pulses/src/lib.rs", text)
             .iter()
-            .map(|mutant| mutant.make(text).expect("it is there once"))
+            .map(|mutant| mutant.apply(text).expect("it is there once"))
             .collect();
         assert_eq!(made.len(), 2);
         assert_eq!(made[1], "one\na = b + c;\ntwo\na = b - c;\n");
@@ -212,7 +212,7 @@ mod tests {
             (0, 20, 0.0000, 0.1611),
             (1, 29, 0.0061, 0.1718),
         ] {
-            let (min, max) = wilson(noticed, tried);
+            let (min, max) = wilson_interval(noticed, tried);
             assert!((min - low).abs() < 1e-4 && (max - high).abs() < 1e-4);
         }
     }

@@ -6,7 +6,7 @@ pub struct Mutant {
     /// The file's path from the root of the tree.
     pub file: String,
     /// The description of the mistake.
-    pub wrong: String,
+    pub description: String,
     /// Part of the names of the tests that are run first.
     pub test: Option<String>,
     /// The package whose own tests must notice the mistake, for code that also runs on the host.
@@ -23,10 +23,10 @@ pub struct Mutant {
 
 impl Mutant {
     /// Returns a mistake that changes nothing, in a file of the core with this text.
-    pub fn none(file: &str, text: String) -> Self {
+    pub fn unchanged(file: &str, text: String) -> Self {
         Self {
             file: file.into(),
-            wrong: "nothing".into(),
+            description: "nothing".into(),
             package: Some("lizard-core".into()),
             is_fresh: true,
             new: text.clone(),
@@ -39,7 +39,7 @@ impl Mutant {
     ///
     /// # Errors
     /// Fails if the old text is not in the file, or more than once.
-    pub fn make(&self, text: &str) -> Result<String, String> {
+    pub fn apply(&self, text: &str) -> Result<String, String> {
         match text.matches(&self.old).count() {
             1 => Ok(text.replace(&self.old, &self.new)),
             0 => Err("the old text is missing".into()),
@@ -62,7 +62,8 @@ pub fn read(list: &str) -> Result<Vec<Mutant>, String> {
         }
         if line.is_empty() {
             if let Some(mutant) = open.take() {
-                if mutant.file.is_empty() || mutant.wrong.is_empty() || mutant.old.is_empty() {
+                if mutant.file.is_empty() || mutant.description.is_empty() || mutant.old.is_empty()
+                {
                     let line_number = mutant.line;
                     return Err(format!(
                         "line {line_number}: an entry needs a file, what is wrong, old text"
@@ -84,7 +85,7 @@ pub fn read(list: &str) -> Result<Vec<Mutant>, String> {
             let (key, value) = line.split_once(' ').unwrap_or((line, ""));
             match key {
                 "file" => mutant.file = value.into(),
-                "wrong" => mutant.wrong = value.into(),
+                "wrong" => mutant.description = value.into(),
                 "test" => mutant.test = Some(value.into()),
                 "package" => mutant.package = Some(value.into()),
                 _ => return Err(format!("line {line_number}: what is {key:?}?")),
@@ -116,12 +117,12 @@ mod tests {
             (mutants[0].line, mutants[0].test.as_deref()),
             (3, Some("one"))
         );
-        let made = mutants[0].make("let b = 0;\nlet a = 1;\n");
+        let made = mutants[0].apply("let b = 0;\nlet a = 1;\n");
         assert_eq!(made.as_deref(), Ok("let b = 0;\nlet a = 2;"));
-        let gone = mutants[0].make("let a = 3;\n").expect_err("it is gone");
+        let gone = mutants[0].apply("let a = 3;\n").expect_err("it is gone");
         assert!(gone.contains("missing"), "{gone}");
         let twice = mutants[0]
-            .make("let a = 1;\nlet a = 1;\n\n")
+            .apply("let a = 1;\nlet a = 1;\n\n")
             .expect_err("it is there twice");
         assert!(twice.contains("2 times"), "{twice}");
     }

@@ -39,7 +39,7 @@ fn root() -> PathBuf {
 /// The outcome of the tests of a mistake.
 enum Outcome {
     Caught(String),
-    Lives,
+    Unnoticed,
     /// The code with the mistake does not compile.
     NoProgram,
 }
@@ -74,11 +74,11 @@ fn sample(parts: &[String], count: usize, seed: u64) -> Result<usize, String> {
         }
     }
     println!("seed {seed}: {count} of {} fresh mistakes", mutants.len());
-    let unchanged = Mutant::none(
+    let unchanged = Mutant::unchanged(
         "crates/core/src/lib.rs",
         text(&root().join("crates/core/src/lib.rs"))?,
     );
-    if !matches!(scratch.judge(&unchanged)?, Outcome::Lives) {
+    if !matches!(scratch.judge(&unchanged)?, Outcome::Unnoticed) {
         return Err("a test fails without any mistake".into());
     }
     // Numbers of noticed and of tried mistakes: in code that moves a servo or a saved value, and in other code.
@@ -88,24 +88,24 @@ fn sample(parts: &[String], count: usize, seed: u64) -> Result<usize, String> {
         if moving[1] + rest[1] == count {
             break;
         }
-        let fate = match scratch.judge(&mutant)? {
+        let outcome = match scratch.judge(&mutant)? {
             Outcome::NoProgram => continue,
             // Up to a hundred tests may notice a mistake; the first is enough.
             Outcome::Caught(test) => {
                 format!("caught by {}", test.split(',').next().unwrap_or(&test))
             }
-            Outcome::Lives => "LIVES".to_owned(),
+            Outcome::Unnoticed => "LIVES".to_owned(),
         };
-        println!("{}, {}: {fate}", mutant.file, mutant.wrong);
-        let of = &mut tally[usize::from(!fresh::moves(&mutant.file))];
-        of[0] += usize::from(fate != "LIVES");
+        println!("{}, {}: {outcome}", mutant.file, mutant.description);
+        let of = &mut tally[usize::from(!fresh::affects_motion(&mutant.file))];
+        of[0] += usize::from(outcome != "LIVES");
         of[1] += 1;
     }
     for ([noticed, tried], kind) in tally
         .into_iter()
         .zip(["that move a servo or a saved value", "in text"])
     {
-        let (min, max) = fresh::wilson(noticed, tried);
+        let (min, max) = fresh::wilson_interval(noticed, tried);
         println!(
             "mistakes {kind}: {noticed} of {tried} noticed, {:.1} to {:.1} % (Wilson, 95 %)",
             100.0 * min,
@@ -117,16 +117,10 @@ fn sample(parts: &[String], count: usize, seed: u64) -> Result<usize, String> {
 
 /// Tries the listed mistakes. Returns the number that no test notices.
 fn run(parts: &[String]) -> Result<usize, String> {
-    let path = root().join("host-tests/mutants.txt");
-    let list = list::read(&text(&path)?).map_err(|error| format!("mutants.txt, {error}"))?;
-    // Checks the old texts of all entries first: a list that is out of date is an error, even if only some are
-    // tried.
-    for mutant in &list {
-        let made = mutant.make(&text(&root().join(&mutant.file))?);
-        made.map_err(|e| format!("mutants.txt, line {}: {}: {e}", mutant.line, mutant.file))?;
-    }
+    let list = read_list()?;
     let wanted = |mutant: &&Mutant| {
-        let is_named = |part: &String| mutant.file.contains(part) || mutant.wrong.contains(part);
+        let is_named =
+            |part: &String| mutant.file.contains(part) || mutant.description.contains(part);
         parts.is_empty() || parts.iter().any(is_named)
     };
     let list: Vec<&Mutant> = list.iter().filter(wanted).collect();
@@ -138,31 +132,49 @@ fn run(parts: &[String]) -> Result<usize, String> {
     {
         return Err("a test fails without any mistake".into());
     }
-    let mut lives = Vec::new();
+    let mut unnoticed = Vec::new();
     for mutant in &list {
         let start = Instant::now();
-        let fate = scratch.judge(mutant)?;
-        let fate = match &fate {
+        let outcome = scratch.judge(mutant)?;
+        let outcome = match &outcome {
             Outcome::Caught(test) => format!("caught by {test}"),
-            Outcome::Lives => {
-                lives.push(mutant);
+            Outcome::Unnoticed => {
+                unnoticed.push(mutant);
                 "LIVES".to_owned()
             }
-            Outcome::NoProgram => return Err(format!("{}: it does not build", mutant.wrong)),
+            Outcome::NoProgram => return Err(format!("{}: it does not build", mutant.description)),
         };
         let seconds = start.elapsed().as_secs();
-        println!("{}: {}: {fate} ({seconds} s)", mutant.file, mutant.wrong);
+        println!(
+            "{}: {}: {outcome} ({seconds} s)",
+            mutant.file, mutant.description
+        );
     }
     println!(
         "{} mistakes, {} noticed, {} live",
         list.len(),
-        list.len() - lives.len(),
-        lives.len()
+        list.len() - unnoticed.len(),
+        unnoticed.len()
     );
-    for mutant in &lives {
-        println!("lives: mutants.txt, line {}: {}", mutant.line, mutant.wrong);
+    for mutant in &unnoticed {
+        println!(
+            "lives: mutants.txt, line {}: {}",
+            mutant.line, mutant.description
+        );
     }
-    Ok(lives.len())
+    Ok(unnoticed.len())
+}
+
+/// Reads the list of mistakes and checks the old texts of all entries: a list that is out of date is an error, even
+/// if only some of its mistakes are tried.
+fn read_list() -> Result<Vec<Mutant>, String> {
+    let path = root().join("host-tests/mutants.txt");
+    let list = list::read(&text(&path)?).map_err(|error| format!("mutants.txt, {error}"))?;
+    for mutant in &list {
+        let made = mutant.apply(&text(&root().join(&mutant.file))?);
+        made.map_err(|e| format!("mutants.txt, line {}: {}: {e}", mutant.line, mutant.file))?;
+    }
+    Ok(list)
 }
 
 fn text(path: &Path) -> Result<String, String> {
@@ -227,13 +239,13 @@ impl Scratch {
     fn judge(&self, mutant: &Mutant) -> Result<Outcome, String> {
         // Reads the copy's text, since the original tree may be edited meanwhile.
         let right = text(&self.folder.join("tree").join(&mutant.file))?;
-        self.write(&mutant.file, mutant.make(&right)?.as_bytes())?;
-        let fate = match &mutant.package {
+        self.write(&mutant.file, mutant.apply(&right)?.as_bytes())?;
+        let outcome = match &mutant.package {
             Some(package) => self.in_its_package(package, mutant),
             None => self.in_the_firmware(mutant),
         };
         self.write(&mutant.file, right.as_bytes())?;
-        fate.map_err(|error| format!("{}: {}: {error}", mutant.file, mutant.wrong))
+        outcome.map_err(|error| format!("{}: {}: {error}", mutant.file, mutant.description))
     }
 
     fn in_the_firmware(&self, mutant: &Mutant) -> Result<Outcome, String> {
@@ -250,7 +262,7 @@ impl Scratch {
                 Some(_) => {}
             }
         }
-        Ok(Outcome::Lives)
+        Ok(Outcome::Unnoticed)
     }
 
     /// Runs the tests of a package of the copy: those that should notice the mistake, then all. For a generated
@@ -284,7 +296,7 @@ impl Scratch {
         if is_fresh {
             self.in_the_firmware(mutant)
         } else {
-            Ok(Outcome::Lives)
+            Ok(Outcome::Unnoticed)
         }
     }
 
@@ -371,4 +383,13 @@ fn failures(printed: &str) -> Vec<String> {
         )
     };
     printed.lines().filter_map(name).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn every_listed_mistake_can_be_made_in_the_code() {
+        let list = super::read_list().expect("the list is current");
+        assert!(list.len() > 50, "{} mistakes", list.len());
+    }
 }

@@ -28,7 +28,7 @@ const COUNTED: [&str; 3] = ["walk 1", "trot 2", "round 1"];
 const DEBOUNCED: u8 = 5;
 
 /// Time in which a supply is measured often enough to be believed.
-const BELIEVED: Time = 14 * FRAME;
+const SUPPLY_SETTLING: Time = 14 * FRAME;
 
 /// The observer's limits for a robot.
 pub(super) fn limits(robot: &Robot) -> Limits {
@@ -66,12 +66,12 @@ impl World {
             text,
         });
         if text == "ok load" {
-            self.accepts_loaded_limits()?;
+            self.check_loaded_limits()?;
         }
         let is_refused = text.starts_with("err 8");
         if is_refused
             && !self.observer.was_low(0, 70 * FRAME)
-            && Time::from(self.running.motion().frames()) * FRAME > BELIEVED
+            && Time::from(self.running.motion().frames()) * FRAME > SUPPLY_SETTLING
         {
             return broken(Rule::Allowed, text);
         }
@@ -81,15 +81,15 @@ impl World {
                 self.observe(Event::Fault);
             }
             if is_late
-                || self.is_weak
+                || self.sags_when_servos_wake
                 || self.observer.was_low(0, 1)
-                || self.observer.was_low(1, BELIEVED)
+                || self.observer.was_low(1, SUPPLY_SETTLING)
             {
                 self.observer.drop_pending();
             } else if text == "ok stand" && stack {
-                self.stands_after(text)?;
+                self.check_stands_after(text)?;
             } else if COUNTED.contains(&line) {
-                self.ends_after(text)?;
+                self.check_ends_after(text)?;
             }
         }
         self.observer.verdict()
@@ -116,7 +116,7 @@ impl World {
     }
 
     /// Checks that `limit` accepts everything that `cal` prints.
-    fn accepts_loaded_limits(&self) -> Verdict {
+    fn check_loaded_limits(&self) -> Verdict {
         let mut later = self.running.clone();
         later.board.transmitter.text.clear();
         for line in later.send(b"cal\r") {
@@ -169,7 +169,7 @@ impl World {
             && copies::last_rest_pose(motion.robot(), &readable) == Some(*motion.pose())
     }
 
-    fn stands_after(&self, answer: &str) -> Verdict {
+    fn check_stands_after(&self, answer: &str) -> Verdict {
         let mut later = self.running.clone();
         for _ in 0..MOTION_FRAMES {
             later.frame();
@@ -188,7 +188,7 @@ impl World {
         Ok(())
     }
 
-    fn ends_after(&self, answer: &str) -> Verdict {
+    fn check_ends_after(&self, answer: &str) -> Verdict {
         let mut later = self.running.clone();
         later.run_without_reader(MOTION_FRAMES);
         if later.main.control().activity() != Activity::Stop {

@@ -52,11 +52,11 @@ impl World {
     }
 
     /// Checks that the robot finds the sender's rate and answers, if it is asked repeatedly.
-    pub(super) fn is_found(&self) -> Verdict {
+    pub(super) fn check_rate_is_found(&self) -> Verdict {
         let mut asked = self.running.clone();
         asked.board.transmitter.is_held = false;
         for _ in 0..FOUND_AFTER {
-            if asked.is_over() {
+            if asked.is_stopped_by_watchdog() {
                 return Ok(());
             }
             let line: &[u8] = if asked.board.rate == self.sender {
@@ -102,7 +102,7 @@ impl World {
             // The answer to `status` is judged when it is printed.
             return Ok(());
         }
-        self.known += 1;
+        self.judged_answers += 1;
         self.unread = None;
         self.answer(line, answer)?;
         self.look_ahead()
@@ -117,8 +117,8 @@ impl World {
         for line in whole.split("\r\n").filter(|line| !line.is_empty()) {
             self.observe(Event::Printed(since, line));
             if is_final(line) {
-                if self.known > 0 && !line.starts_with("ok gait=") {
-                    self.known -= 1;
+                if self.judged_answers > 0 && !line.starts_with("ok gait=") {
+                    self.judged_answers -= 1;
                 } else if let Some(asked) = self.unread.take() {
                     self.answer(asked, line)?;
                 }

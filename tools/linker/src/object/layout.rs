@@ -5,7 +5,7 @@ use object::elf;
 
 use super::Object;
 use crate::edit::Reference;
-use crate::instruction::{falls_through, skips};
+use crate::instruction::{falls_through, may_skip_next};
 use crate::order::{Call, Pieces};
 
 /// The approximate size of the routines of `frames.S`, bytes, for estimates of distances.
@@ -24,7 +24,7 @@ impl Object<'_> {
                 return false;
             };
             let ends = match code.instructions.as_slice() {
-                [.., skip, last] => !skips(skip.code) && !falls_through(last.code),
+                [.., skip, last] => !may_skip_next(skip.code) && !falls_through(last.code),
                 [last] => !falls_through(last.code),
                 [] => true,
             };

@@ -337,12 +337,12 @@ fn numbers_around_sixteen_bits_saturate_instead_of_wrapping() {
         ("70000", u16::MAX),
         ("655360", u16::MAX),
     ] {
-        let read = number_of(digits.as_bytes(), Syntax::Whole);
+        let read = parse_number(digits.as_bytes(), Syntax::Whole);
         assert_eq!(read, Some((value, false)));
     }
-    assert_eq!(number_of(b"12x", Syntax::Whole), None);
+    assert_eq!(parse_number(b"12x", Syntax::Whole), None);
     assert_eq!(
-        number_of(b"655.36", Syntax::Hundredths),
+        parse_number(b"655.36", Syntax::Hundredths),
         Some((u16::MAX, false))
     );
 }

@@ -54,18 +54,22 @@ impl Text {
 
     fn new() -> Self {
         let mut text = Self::default();
-        text.state();
+        text.add_state();
         text
     }
 
-    fn state(&mut self) -> usize {
+    fn add_state(&mut self) -> usize {
         self.next.push(BTreeMap::new());
         self.next.len() - 1
     }
 
     /// Adds a state that each of these bytes leads to, from each of these states.
-    fn lead(&mut self, from: &[usize], bytes: impl IntoIterator<Item = u8> + Clone) -> usize {
-        let to = self.state();
+    fn add_transition(
+        &mut self,
+        from: &[usize],
+        bytes: impl IntoIterator<Item = u8> + Clone,
+    ) -> usize {
+        let to = self.add_state();
         for state in from {
             self.next[*state].extend(bytes.clone().into_iter().map(|byte| (byte, to)));
         }
@@ -77,7 +81,7 @@ impl Text {
             self.next[state]
                 .get(&byte)
                 .copied()
-                .unwrap_or_else(|| self.lead(&[state], [byte]))
+                .unwrap_or_else(|| self.add_transition(&[state], [byte]))
         })
     }
 
@@ -86,7 +90,7 @@ impl Text {
         let mut states = from.to_vec();
         let mut ends = Vec::new();
         for _ in 0..max_digits {
-            states = vec![self.lead(&states, b'0'..=b'9')];
+            states = vec![self.add_transition(&states, b'0'..=b'9')];
             ends.extend(&states);
         }
         ends
@@ -94,9 +98,9 @@ impl Text {
 
     /// Adds degrees or hundredths: an optional sign, up to three digits, up to two decimals.
     fn decimal(&mut self, blank: usize) -> Vec<usize> {
-        let sign = self.lead(&[blank], *b"+-");
+        let sign = self.add_transition(&[blank], *b"+-");
         let mut ends = self.digits(&[blank, sign], 3);
-        let point = self.lead(&ends, *b".");
+        let point = self.add_transition(&ends, *b".");
         ends.extend(self.digits(&[point], 2));
         ends
     }
@@ -110,11 +114,11 @@ impl Text {
     }
 
     /// All commands, as programs and people write them.
-    fn sent() -> Self {
+    fn all_commands() -> Self {
         let mut text = Self::new();
         for gait in &*GAITS {
             let name = text.word(gait);
-            let blank = text.lead(&[name], *b" ");
+            let blank = text.add_transition(&[name], *b" ");
             let counts = text.digits(&[blank], 3);
             text.ends.insert(name);
             text.ends.extend(counts);
@@ -131,13 +135,15 @@ impl Text {
             let mut ends = vec![end];
             // The example has as many arguments as the word takes.
             for (index, example) in word.example().split(' ').skip(1).enumerate() {
-                let blank = text.lead(&ends, *b" ");
+                let blank = text.add_transition(&ends, *b" ");
                 let whole = matches!(word, Word::Speed | Word::Watch | Word::Deadman);
                 ends = match (word, index) {
                     (Word::Trim | Word::Limit | Word::Dir | Word::Scale, 0) => {
-                        vec![text.lead(&[blank], *b"1234")]
+                        vec![text.add_transition(&[blank], *b"1234")]
                     }
-                    _ if matches!(example, "+" | "-") => vec![text.lead(&[blank], *b"+-")],
+                    _ if matches!(example, "+" | "-") => {
+                        vec![text.add_transition(&[blank], *b"+-")]
+                    }
                     _ if whole => text.digits(&[blank], 5),
                     _ => text.decimal(blank),
                 };
@@ -148,7 +154,7 @@ impl Text {
     }
 
     /// A superset of the lines that the parser accepts: arguments of any length and number.
-    fn taken() -> Self {
+    fn accepted_lines() -> Self {
         let mut text = Self::new();
         for word in GAITS
             .iter()
@@ -156,7 +162,7 @@ impl Text {
             .chain(Word::ALL.iter().map(|word| word.text()))
         {
             let end = text.word(word);
-            let blank = text.lead(&[end], *b" \t\x0c");
+            let blank = text.add_transition(&[end], *b" \t\x0c");
             let any: Vec<u8> = match word {
                 "boot" => (b' '..=b'~').collect(),
                 _ => b"0123456789.+- \t\x0c".to_vec(),
@@ -274,7 +280,7 @@ impl Bits {
 
 /// The bits of the sender that a receiver samples, counted from the start edge: for every difference of the
 /// clocks and every position of the middle.
-fn looks(sender: Rate, receiver: Rate) -> BTreeSet<[usize; 10]> {
+fn sampled_bits(sender: Rate, receiver: Rate) -> BTreeSet<[usize; 10]> {
     // The chip's own rate, as src/board/serial.rs has it.
     let chip = 2e6 / (2e6 / f64::from(receiver.baud())).round();
     let ratio = f64::from(sender.baud()) / chip;
@@ -292,10 +298,15 @@ fn looks(sender: Rate, receiver: Rate) -> BTreeSet<[usize; 10]> {
 }
 
 /// A receiver's state at a bit of the sender.
-type At = (Read, usize);
+type ReceiverState = (Read, usize);
 
 /// Reads a byte from each of these start edges; returns the states after it.
-fn read_byte(edges: &BTreeSet<At>, bits: &Bits, text: &Text, look: [usize; 10]) -> BTreeSet<At> {
+fn read_byte(
+    edges: &BTreeSet<ReceiverState>,
+    bits: &Bits,
+    text: &Text,
+    look: [usize; 10],
+) -> BTreeSet<ReceiverState> {
     let mut current: BTreeSet<(Read, usize, u16)> =
         edges.iter().map(|(read, at)| (*read, *at, 0)).collect();
     let mut time = 0;
@@ -328,9 +339,9 @@ fn read_byte(edges: &BTreeSet<At>, bits: &Bits, text: &Text, look: [usize; 10]) 
 }
 
 /// The start edges that can follow each state.
-fn edges_from(states: BTreeSet<At>, bits: &Bits) -> BTreeSet<At> {
+fn edges_from(states: BTreeSet<ReceiverState>, bits: &Bits) -> BTreeSet<ReceiverState> {
     let (mut visited, mut edges) = (BTreeSet::new(), BTreeSet::new());
-    let mut left: Vec<At> = states.into_iter().collect();
+    let mut left: Vec<ReceiverState> = states.into_iter().collect();
     while let Some((read, at)) = left.pop() {
         if !visited.insert((read, at)) {
             continue;
@@ -348,19 +359,19 @@ fn edges_from(states: BTreeSet<At>, bits: &Bits) -> BTreeSet<At> {
 
 /// The commands that a receiver can read at another rate, over all states that it can reach.
 fn commands_read(sender: Rate, receiver: Rate) -> BTreeSet<usize> {
-    let (bits, text) = (Bits::of(&Text::sent()), Text::taken());
+    let (bits, text) = (Bits::of(&Text::all_commands()), Text::accepted_lines());
     let before = [
         Read::Begun(Text::START),
         Read::Other(Text::START, 1),
         Read::Garbled,
     ];
-    let mut to_visit: BTreeSet<At> = (bits.first.iter())
+    let mut to_visit: BTreeSet<ReceiverState> = (bits.first.iter())
         .flat_map(|state| before.map(|read| (read, *state)))
         .collect();
     let (mut visited, mut commands) = (to_visit.clone(), BTreeSet::new());
     while !to_visit.is_empty() {
         let mut ends = BTreeSet::new();
-        for look in looks(sender, receiver) {
+        for look in sampled_bits(sender, receiver) {
             ends.extend(read_byte(&to_visit, &bits, &text, look));
         }
         ends.retain(|(read, _)| match read {
@@ -394,15 +405,15 @@ fn pairs(is_faster: bool) -> impl Iterator<Item = (Rate, Rate)> {
 #[test]
 fn no_line_ends_at_a_receiver_that_is_faster_than_the_sender_of_any_bytes() {
     let bits = Bits::any();
-    let text = Text::taken();
+    let text = Text::accepted_lines();
     for (sender, receiver) in pairs(false) {
-        let edges: BTreeSet<At> = (0..bits.high.len())
+        let edges: BTreeSet<ReceiverState> = (0..bits.high.len())
             .filter(|state| bits.high[*state])
             .flat_map(|state| bits.next[state].iter().filter(|next| !bits.high[**next]))
             .map(|state| (Read::Garbled, *state))
             .collect();
         assert!(edges.len() > 128);
-        for look in looks(sender, receiver) {
+        for look in sampled_bits(sender, receiver) {
             let read = read_byte(&edges, &bits, &text, look);
             let ends = read
                 .iter()
@@ -414,7 +425,7 @@ fn no_line_ends_at_a_receiver_that_is_faster_than_the_sender_of_any_bytes() {
 
 #[test]
 fn no_command_that_may_come_first_is_read_at_a_slower_rate() {
-    let mut text = Text::taken();
+    let mut text = Text::accepted_lines();
     let words = Word::ALL.iter().map(|word| word.text());
     let is_short = |word: &&str| word.len() < MIN_COMMAND_BYTES;
     let short: BTreeSet<usize> = words.filter(is_short).map(|word| text.word(word)).collect();
@@ -429,7 +440,7 @@ fn no_command_that_may_come_first_is_read_at_a_slower_rate() {
 
 #[test]
 fn every_command_is_read_at_its_own_rate() {
-    let mut text = Text::taken();
+    let mut text = Text::accepted_lines();
     for rate in Rate::ALL {
         let read = commands_read(rate, rate);
         let words = Word::ALL.iter().map(|word| word.text());

@@ -51,7 +51,7 @@ impl Control {
     fn check_gaits(&self, servo: Servo, calibration: &Calibration) -> Result<(), Refusal> {
         match self.motion.robot().reach(servo).is_within(calibration) {
             true => Ok(()),
-            false => Err(Refusal::Unfit(servo)),
+            false => Err(Refusal::TravelTooNarrow(servo)),
         }
     }
 
@@ -60,7 +60,7 @@ impl Control {
     fn check_poses(&self, servo: Servo, calibration: &Calibration) -> Result<(), Refusal> {
         match self.motion.goes_beyond(servo, calibration) {
             false => Ok(()),
-            true => Err(Refusal::Elsewhere(servo)),
+            true => Err(Refusal::PoseOutsideTravel(servo)),
         }
     }
 

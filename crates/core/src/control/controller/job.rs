@@ -30,7 +30,7 @@ impl Control {
     /// True while an EEPROM operation is in progress; no order may be given meanwhile. A rest
     /// pose that waits for a better supply does not count, since no order waits for it.
     pub fn is_writing(&self) -> bool {
-        self.job.is_some() || self.rested.is_some() && self.safety.allows_writing_now()
+        self.job.is_some() || self.rest_record.is_some() && self.safety.allows_writing_now()
     }
 
     /// True while an order waits for the supply: until it is measured, or until a dip ends or
@@ -52,14 +52,14 @@ impl Control {
             return None;
         }
         let may_write = self.safety.allows_writing_now();
-        if may_write && let Some(writing) = &mut self.rested {
+        if may_write && let Some(writing) = &mut self.rest_record {
             let pose = Settings::of_pose(self.motion.pose(), self.motion.robot());
             match writing.step(pose.bytes(), memory) {
                 Progress::InProgress => return None,
                 Progress::Done => {}
                 Progress::Failed => self.safety.notify(Notice::NotKept),
             }
-            self.rested = None;
+            self.rest_record = None;
             return None;
         }
         let outcome = match &mut self.job {
@@ -68,7 +68,7 @@ impl Control {
                 let mut saved = Settings::NONE;
                 match copies::read(self.motion.robot(), memory, &mut saved) {
                     Outcome::Latest | Outcome::OneCopy => match self.replace(&saved) {
-                        Err(Refusal::Unfit(_)) => Err(Refusal::NothingSaved),
+                        Err(Refusal::TravelTooNarrow(_)) => Err(Refusal::NothingSaved),
                         outcome => outcome,
                     },
                     _ => Err(Refusal::NothingSaved),

@@ -16,18 +16,18 @@ pub(super) struct Routine {
     /// The number of the next step.
     step: u8,
     /// Rounds that are not over yet; 0 for a routine without an end.
-    left: u16,
+    rounds_left: u16,
     /// Frames until the step is over; 0 if the end of a gait's count is awaited,
     /// [`Step::ENDLESS`] if only a contact ends it.
-    wait: u16,
+    frames_left: u16,
 }
 
 impl Routine {
     pub const NONE: Self = Self {
         id: GaitId::STAND,
         step: 0,
-        left: 0,
-        wait: 0,
+        rounds_left: 0,
+        frames_left: 0,
     };
 
     pub fn is_under_way(&self) -> bool {
@@ -44,7 +44,7 @@ impl Control {
         if gait.is_routine() {
             let [_, _, rounds, _] = gait.channels;
             self.routine.id = id;
-            self.routine.left = if count == 0 { rounds.offset } else { count };
+            self.routine.rounds_left = if count == 0 { rounds.offset } else { count };
             self.next_step();
         } else {
             self.motion.start_gait(id, count);
@@ -53,17 +53,17 @@ impl Control {
 
     /// Continues the routine after a frame in which the awaited contact had this level.
     #[inline(never)]
-    pub(super) fn go_on(&mut self, is_closed: bool) {
+    pub(super) fn advance_routine(&mut self, is_closed: bool) {
         if self.motion.hazard().is_some() {
             self.routine = Routine::NONE;
             return;
         }
-        let is_over = match self.routine.wait {
+        let is_over = match self.routine.frames_left {
             0 => self.motion.has_ended(),
             Step::ENDLESS => false,
             _ => {
-                self.routine.wait -= 1;
-                self.routine.wait == 0
+                self.routine.frames_left -= 1;
+                self.routine.frames_left == 0
             }
         };
         if self.contact.frame(is_closed) || is_over {
@@ -79,7 +79,7 @@ impl Control {
         let mut number = u16::from(self.routine.step);
         if number >= steps.offset {
             number = first_of_round.offset;
-            if self.routine.left == 1 {
+            if self.routine.rounds_left == 1 {
                 self.routine = Routine::NONE;
                 // The pose of its last rest has to survive a loss of power.
                 if self.motion.is_resting() {
@@ -91,7 +91,7 @@ impl Control {
                 }
                 return;
             }
-            self.routine.left = self.routine.left.saturating_sub(1);
+            self.routine.rounds_left = self.routine.rounds_left.saturating_sub(1);
         }
         let mut step = robot.step(&gait, number);
         let mut input = Input::NONE;
@@ -107,7 +107,7 @@ impl Control {
             count,
         } = step;
         self.routine.step = number as u8 + 1;
-        self.routine.wait = if kind == Step::CYCLES { 0 } else { count };
+        self.routine.frames_left = if kind == Step::CYCLES { 0 } else { count };
         self.contact = if kind == Step::WAIT {
             Contact::closing(input)
         } else {

@@ -1,7 +1,7 @@
 //! Every fault, alone and with others.
 
 use super::*;
-use crate::sample::{Sample, WELL};
+use crate::sample::{HEALTHY, Sample};
 
 fn supplies() -> Supplies {
     Sample::odd().supplies()
@@ -25,7 +25,7 @@ fn at(volts: f64) -> Health {
             reference: (1.08 / volts * 1024.0) as u16,
             rail: (6.0 / 3.378 * 1.08 / volts * 1024.0) as u16,
         },
-        ..WELL
+        ..HEALTHY
     }
 }
 
@@ -43,7 +43,7 @@ fn notices(safety: &mut Safety) -> std::vec::Vec<Notice> {
 fn while_all_is_well_no_reaction_and_no_notice_follows() {
     let mut safety = without_boot();
     for _ in 0..1000 {
-        assert_eq!(frame(&mut safety, &WELL), Reaction::None);
+        assert_eq!(frame(&mut safety, &HEALTHY), Reaction::None);
     }
     assert_eq!(safety.fault(), None);
     assert_eq!(safety.notice(), None);
@@ -65,10 +65,10 @@ fn before_the_supply_has_been_measured_a_robot_may_move_but_not_write() {
     }
     // One reading decides nothing here, too.
     for _ in 0..5 {
-        frame(&mut safety, &WELL);
+        frame(&mut safety, &HEALTHY);
         assert!(!safety.allows_writing());
     }
-    frame(&mut safety, &WELL);
+    frame(&mut safety, &HEALTHY);
     assert!(safety.allows_writing());
 }
 
@@ -76,7 +76,7 @@ fn before_the_supply_has_been_measured_a_robot_may_move_but_not_write() {
 fn boot_is_requested_once_three_seconds_after_power_on() {
     let mut safety = Safety::default();
     for number in 1..=1000 {
-        let order = frame(&mut safety, &WELL);
+        let order = frame(&mut safety, &HEALTHY);
         let expected = if number == 150 {
             Reaction::Boot
         } else {
@@ -92,7 +92,7 @@ fn a_byte_a_fault_or_a_low_supply_cancels_boot() {
         let mut safety = Safety::default();
         let mut booted = false;
         for number in 1..=400 {
-            booted |= frame(&mut safety, &WELL) == Reaction::Boot;
+            booted |= frame(&mut safety, &HEALTHY) == Reaction::Boot;
             if number == 100 {
                 disturb(&mut safety);
             }
@@ -101,12 +101,12 @@ fn a_byte_a_fault_or_a_low_supply_cancels_boot() {
     };
     assert!(boots(|_| {}));
     assert!(!boots(Safety::note_byte));
-    assert!(!boots(|safety| safety.fail(Fault::Late)));
+    assert!(!boots(|safety| safety.record_fault(Fault::Late)));
     assert!(!boots(|safety| {
         for _ in 0..6 {
             frame(safety, &at(4.2));
         }
-        safety.clear();
+        safety.clear_fault();
     }));
 }
 
@@ -118,7 +118,7 @@ fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says_and_no_sooner()
         for _ in 0..10 {
             safety.note_command();
             let mut frames = 0;
-            while safety.frame(&WELL, &supplies, State::Walking, deadman) == Reaction::None {
+            while safety.frame(&HEALTHY, &supplies, State::Walking, deadman) == Reaction::None {
                 frames += 1;
             }
             // A command may come just before a frame: this many milliseconds have passed since then, in this
@@ -129,7 +129,7 @@ fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says_and_no_sooner()
                 "{frames}"
             );
             assert_eq!(safety.fault(), Some(Fault::Link));
-            safety.clear();
+            safety.clear_fault();
         }
     }
 }
@@ -144,7 +144,7 @@ fn without_deadman_or_gait_silence_is_no_fault() {
             (State::Still, 20),
             (State::Resting, 20),
         ] {
-            let reaction = safety.frame(&WELL, &supplies, state, deadman);
+            let reaction = safety.frame(&HEALTHY, &supplies, state, deadman);
             assert_eq!(reaction, Reaction::None);
         }
     }
@@ -156,7 +156,7 @@ fn boot_begins_a_gait_that_no_line_ends_before_deadman_has_passed() {
     let mut state = State::Still;
     let mut booted = 0;
     for number in 1..400 {
-        match safety.frame(&WELL, &supplies(), state, 1000) {
+        match safety.frame(&HEALTHY, &supplies(), state, 1000) {
             Reaction::Boot => (state, booted) = (State::Walking, number),
             Reaction::None => {}
             other => {
@@ -192,7 +192,7 @@ fn a_falling_supply_stops_then_ends_the_pulses_and_forbids_writing_first() {
 fn each_late_edge_stops_the_robot_and_is_reported() {
     let mut safety = without_boot();
     for late in [1, 2, 7, 65_535] {
-        let health = Health { late, ..WELL };
+        let health = Health { late, ..HEALTHY };
         assert_eq!(frame(&mut safety, &health), Reaction::Freeze);
         assert_eq!(safety.fault(), Some(Fault::Late));
         assert_eq!(notices(&mut safety), [Notice::Fault]);
@@ -205,7 +205,7 @@ fn a_stack_in_the_data_stops_and_goes_on_doing_so_after_every_motion() {
     let mut safety = without_boot();
     let health = Health {
         is_stack_intact: false,
-        ..WELL
+        ..HEALTHY
     };
     for _ in 0..3 {
         assert_eq!(frame(&mut safety, &health), Reaction::Freeze);
@@ -213,7 +213,7 @@ fn a_stack_in_the_data_stops_and_goes_on_doing_so_after_every_motion() {
         for _ in 0..100 {
             assert_eq!(frame(&mut safety, &health), Reaction::None);
         }
-        safety.clear();
+        safety.clear_fault();
     }
 }
 

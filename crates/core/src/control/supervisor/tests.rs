@@ -88,19 +88,19 @@ fn the_docs_print_the_table_of_restarts() {
         for (brown_outs, often) in [(0, "once, twice"), (BROWN_OUTS, "three times in a row")] {
             let action = |before| first_action(cause, brown_outs, before);
             if brown_outs > 0
-                && Before::ALL.map(action)
-                    == Before::ALL.map(|before| first_action(cause, 0, before))
+                && ServosBefore::ALL.map(action)
+                    == ServosBefore::ALL.map(|before| first_action(cause, 0, before))
             {
                 continue;
             }
             let depends = matches!(cause, Cause::External | Cause::BrownOut);
-            let cells = Before::ALL.map(|before| match action(before).0 {
+            let cells = ServosBefore::ALL.map(|before| match action(before).0 {
                 FirstAction::Wake => "wakes, stands",
                 FirstAction::TakeOver => "wakes where it was, stands",
                 FirstAction::Hold => "held",
                 FirstAction::Rest => "rests",
             });
-            let fault = action(Before::Held).1;
+            let fault = action(ServosBefore::Held).1;
             rows.push(format!(
                 "| {} | {} | {} | {} |",
                 match cause {
@@ -150,15 +150,15 @@ fn the_reaction_never_relaxes_as_the_supply_sinks() {
 fn servos_wake_only_if_nothing_held_them_and_are_taken_over_only_if_held() {
     for cause in Cause::ALL {
         for brown_outs in 0..=BROWN_OUTS {
-            for before in Before::ALL {
+            for before in ServosBefore::ALL {
                 let case = format!("{cause:?}, {brown_outs} brown-outs, {before:?}");
                 let (begins, fault) = first_action(cause, brown_outs, before);
-                let nothing_known = before == Before::Nothing && fault.is_none();
+                let nothing_known = before == ServosBefore::Nothing && fault.is_none();
                 let wakes = cause == Cause::Power || nothing_known;
                 match begins {
                     FirstAction::Wake => assert!(wakes, "must not wake: {case}"),
                     FirstAction::TakeOver | FirstAction::Hold => {
-                        assert_eq!(before, Before::Held, "nothing to take over: {case}");
+                        assert_eq!(before, ServosBefore::Held, "nothing to take over: {case}");
                         assert!(!wakes, "must wake: {case}");
                     }
                     FirstAction::Rest => assert!(!wakes, "must wake: {case}"),

@@ -53,18 +53,19 @@ impl Bounds {
         }
     }
 
-    fn most(&self, of: impl Fn(&bounds::End) -> f64) -> f64 {
+    fn max_of_ends(&self, of: impl Fn(&bounds::End) -> f64) -> f64 {
         of(&self.ends[0]).max(of(&self.ends[1]))
     }
 }
 
 /// True if the exact value is clear of all its limits by more than the errors, or
 /// beyond one of them; `None` in between.
-fn truth(robot: &Sample, pose: &Pose) -> Option<bool> {
+fn is_safe_for_certain(robot: &Sample, pose: &Pose) -> Option<bool> {
     let bounds = Bounds::of(robot, pose);
     let Some(solution) = robot.solve(pose) else {
         // A loop that just fails to close may get a margin from the integers, up to the error's bound.
-        return (bounds.most(|end| end.type2) < robot.measures.limits.type2).then_some(false);
+        return (bounds.max_of_ends(|end| end.type2) < robot.measures.limits.type2)
+            .then_some(false);
     };
     let truths = [&solution.head, &solution.tail];
     let crossing = |(truth, bound): (&&kinematics::FiveBarPose, &bounds::End)| {
@@ -76,8 +77,8 @@ fn truth(robot: &Sample, pose: &Pose) -> Option<bool> {
     // Limits are rounded up to a step, strokes inwards.
     let step = 1.0 / per_mm(robot.content.sides[0].scale).min(per_mm(robot.content.sides[1].scale));
     let scaled_by = |sign: f64| kinematics::Limits {
-        type2: robot.measures.limits.type2 + sign * (bounds.most(|end| end.type2) + Q15),
-        type1: robot.measures.limits.type1 + sign * (bounds.most(bounds::End::type1) + Q15),
+        type2: robot.measures.limits.type2 + sign * (bounds.max_of_ends(|end| end.type2) + Q15),
+        type1: robot.measures.limits.type1 + sign * (bounds.max_of_ends(bounds::End::type1) + Q15),
         leg: robot.measures.limits.leg + sign * (DIRECTION + Q15),
         stroke_min: robot.measures.limits.stroke_min
             + sign * (bounds.sliders[0].max(bounds.sliders[1]) + step),
@@ -94,7 +95,7 @@ fn truth(robot: &Sample, pose: &Pose) -> Option<bool> {
 }
 
 /// Checks that every margin and slider of a pose is within the bounds of its error.
-fn measured(robot: &Sample, pose: &Pose) -> Result<(), TestCaseError> {
+fn check_errors(robot: &Sample, pose: &Pose) -> Result<(), TestCaseError> {
     let clearance = Clearance::of(robot, pose);
     let Some(truth) = robot.solve(pose) else {
         return Ok(());
@@ -151,7 +152,7 @@ proptest! {
         (robot, poses) in posed(),
     ) {
         for pose in &poses {
-            measured(&robot, pose)?;
+            check_errors(&robot, pose)?;
         }
     }
 
@@ -160,7 +161,7 @@ proptest! {
         (robot, poses) in posed(),
     ) {
         for pose in &poses {
-            if let Some(safe) = truth(&robot, pose) {
+            if let Some(safe) = is_safe_for_certain(&robot, pose) {
                 let hazard = Clearance::of(&robot, pose).hazard(&robot);
                 prop_assert_eq!(hazard.is_none(), safe, "{:?}", hazard);
             }
@@ -174,12 +175,14 @@ fn the_bounds_decide_nearly_every_pose_and_are_narrow_where_a_robot_stands() {
     let mut decided = 0;
     for _ in 0..250 {
         let (robot, poses) = posed().new_tree(&mut runner).expect("a pose").current();
-        let known = poses.iter().filter(|pose| truth(&robot, pose).is_some());
+        let known = poses
+            .iter()
+            .filter(|pose| is_safe_for_certain(&robot, pose).is_some());
         decided += known.count();
         let standing = Bounds::of(&robot, &Pose::NEUTRAL);
         let (type2, type1) = (
-            standing.most(|end| end.type2),
-            standing.most(bounds::End::type1),
+            standing.max_of_ends(|end| end.type2),
+            standing.max_of_ends(bounds::End::type1),
         );
         assert!(type2 < 0.01 && type1 < 0.02, "{type2} {type1}");
         assert!(

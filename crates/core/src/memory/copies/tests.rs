@@ -27,7 +27,7 @@ fn settings(robot: &Sample, n: i16) -> Settings {
     }
     settings.set_deadman(1000 + n as u16);
     settings.set_boot(Boot::Gait(robot.id("sway left")), robot);
-    assert_eq!(settings.unfit(robot), None);
+    assert_eq!(settings.first_unfit_servo(robot), None);
     settings
 }
 
@@ -260,13 +260,13 @@ fn a_rest_is_remembered_until_it_is_forgotten_and_only_by_its_own_robot() {
     for sweeps in [[0, 1, -2, 30_000], [-100, 4000, 17, -32_768]] {
         let rest_pose = Pose(sweeps.map(Sweep));
         let saved = Settings::of_pose(&rest_pose, &robot);
-        let mut writing = RESTED.write();
+        let mut writing = REST_POSE.write();
         while writing.step(saved.bytes(), &mut eeprom) == Progress::InProgress {}
         assert_eq!(last_rest_pose(&robot, &eeprom), Some(rest_pose));
         let other = robot.clone().with(|content| content.servo_hash = 7);
         assert_eq!(last_rest_pose(&other, &eeprom), None);
     }
-    let mut writing = RESTED.invalidate();
+    let mut writing = REST_POSE.invalidate();
     while writing.step(&[0; CONTENT], &mut eeprom) == Progress::InProgress {}
     assert_eq!(last_rest_pose(&robot, &eeprom), None);
     let outside = |address: &u16| !(128..128 + LENGTH).contains(address);

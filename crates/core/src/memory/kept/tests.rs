@@ -71,7 +71,7 @@ const CAUSES: [Option<Cause>; 4] = [
 fn stance(n: i16) -> Stance {
     Stance {
         is_resting: n % 3 == 0,
-        awake: (n % 21) as u8,
+        frames_awake: (n % 21) as u8,
         pose: Pose([n, -n, 7 * n, -32_768 + n].map(Sweep)),
         sent: Pulses([24_000, 1 + n as u16, 65_535 - n as u16, 0].map(Width)),
     }

@@ -3,7 +3,7 @@
 //! A servo does not report its angle. A robot that rested or was held until the reset is in the pose of its
 //! saved stance, so it need not jump to the neutral pose.
 
-use super::{AWAKE, Motion, WAKE_INTERVAL_FRAMES};
+use super::{AWAKE_FRAMES, Motion, WAKE_INTERVAL_FRAMES};
 use crate::memory::restart::Stance;
 use crate::motion::state::{State, Target};
 use crate::numbers::gaits::GaitId;
@@ -51,8 +51,8 @@ impl Motion {
             self.next = Some(Target::Gait(GaitId::STAND));
         } else {
             // The next servo to wake waits for a full interval.
-            let awake = stance.awake.min(AWAKE);
-            self.stance.awake = awake - awake % WAKE_INTERVAL_FRAMES;
+            let awake = stance.frames_awake.min(AWAKE_FRAMES);
+            self.stance.frames_awake = awake - awake % WAKE_INTERVAL_FRAMES;
         }
         self.settle();
         true

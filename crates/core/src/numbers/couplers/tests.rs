@@ -52,7 +52,7 @@ proptest! {
             (share, 1) => share.powi(4),
             (share, _) => 1.0 - share.powi(4),
         };
-        let (reach, min) = (reach_sq(left, right), least_sq(left, right));
+        let (reach, min) = (reach_sq(left, right), folded_sq(left, right));
         let tips_sq = min + (f64::from(reach - min) * share) as u32;
         let bars = Bars::new(left, right);
         let lean = bars.couplers().at(tips_sq);
@@ -90,7 +90,7 @@ proptest! {
         beyond in 0u32..1 << 28,
     ) {
         let bars = Bars::new(left, right);
-        let (reach, min) = (reach_sq(left, right), least_sq(left, right));
+        let (reach, min) = (reach_sq(left, right), folded_sq(left, right));
         prop_assert_eq!(bars.couplers().at(reach + beyond), None);
         prop_assert_eq!(bars.couplers().at(min.saturating_sub(beyond)), None);
     }
@@ -99,7 +99,7 @@ proptest! {
 #[test]
 fn entries_are_rounded_to_nearest_but_those_of_a_falling_rise_down() {
     for (left, right) in [(12_800, 12_800), (13_000, 11_000), (9_000, 20_001)] {
-        let (reach, min) = (reach_sq(left, right), least_sq(left, right));
+        let (reach, min) = (reach_sq(left, right), folded_sq(left, right));
         let tables = [
             rise(left, right),
             stretched(left, right),

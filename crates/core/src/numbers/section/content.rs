@@ -7,7 +7,9 @@ use crc::{CRC_32_ISO_HDLC, Crc};
 use lizard_avr::{Flash, Plain};
 
 use super::seal::sealed;
-use super::{CURVES, FORMAT, Header, MAGIC, MAX_NAME_BYTES, MapHead, Numbers, Part, Place, REST};
+use super::{
+    AFTER_NUMBERS, CURVES, FORMAT, Header, MAGIC, MAX_NAME_BYTES, MapHead, Numbers, Part, Place,
+};
 use crate::numbers::bars::Bars;
 use crate::numbers::calibration::Calibration;
 use crate::numbers::calibration::Reach;
@@ -123,7 +125,7 @@ impl Content {
         let mut curves = Vec::new();
         self.curves(&mut curves);
         let rows: usize = self.maps.iter().map(|map| map.rows.len()).sum();
-        usize::from(REST)
+        usize::from(AFTER_NUMBERS)
             + curves.len()
             + size_of_val(self.gaits.as_slice())
             + size_of_val(self.steps.as_slice())
@@ -141,7 +143,7 @@ impl Content {
         let mut rest = Vec::new();
         let curves = self.curves(&mut rest);
         let number = |value: usize| u16::try_from(value).expect("at most 65535");
-        let steps_at = usize::from(REST) + rest.len() + size_of_val(self.gaits.as_slice());
+        let steps_at = usize::from(AFTER_NUMBERS) + rest.len() + size_of_val(self.gaits.as_slice());
         let mut gaits = self.gaits.clone();
         for routine in gaits.iter_mut().filter(|gait| gait.is_routine()) {
             let first = &mut routine.channels[0].offset;
@@ -151,7 +153,7 @@ impl Content {
         let steps = self.steps.iter().flat_map(Plain::bytes).copied();
         let gaits: Vec<u8> = gaits.into_iter().chain(steps).collect();
         let mut place = |count: usize, bytes: &[u8]| {
-            let at = usize::from(REST) + rest.len();
+            let at = usize::from(AFTER_NUMBERS) + rest.len();
             rest.extend(bytes);
             Place {
                 at: number(at),
@@ -225,7 +227,7 @@ impl Content {
                 {
                     return *offset;
                 }
-                let offset = REST + rest.len() as u16;
+                let offset = AFTER_NUMBERS + rest.len() as u16;
                 rest.extend(table.bytes());
                 written.push((table, offset));
                 offset

@@ -7,7 +7,7 @@
 use core::mem::offset_of;
 use std::vec::Vec;
 
-use super::{CHECKED, Header, SPACE};
+use super::{CRC_COVERS_FROM, Header, SPACE};
 use crate::numbers::checksum::Checksum;
 
 /// A byte of erased flash.
@@ -22,8 +22,8 @@ const CRC: usize = offset_of!(Header, crc);
 /// # Panics
 /// If the section is shorter than a header.
 pub fn seal(section: &mut [u8]) {
-    let crc = Checksum::of(&section[CHECKED..]).0;
-    section[CRC..CHECKED].copy_from_slice(&crc.to_le_bytes());
+    let crc = Checksum::of(&section[CRC_COVERS_FROM..]).0;
+    section[CRC..CRC_COVERS_FROM].copy_from_slice(&crc.to_le_bytes());
 }
 
 /// Adds length and checksum to a section. Appends bytes until the checksum detects every write that ended early and
@@ -36,9 +36,9 @@ pub(super) fn sealed(mut section: Vec<u8>) -> Vec<u8> {
         let length = u16::try_from(section.len()).expect("at most 65535");
         section[LENGTH..CRC].copy_from_slice(&length.to_le_bytes());
         seal(&mut section);
-        let checked = &section[CHECKED..];
+        let checked = &section[CRC_COVERS_FROM..];
         let sums = sums(checked);
-        if !a_beginning_passes(checked, &sums) && !another_length_passes(length, &sums) {
+        if !has_undetected_prefix(checked, &sums) && !has_undetected_length(length, &sums) {
             return section;
         }
         section.push(0);
@@ -47,11 +47,11 @@ pub(super) fn sealed(mut section: Vec<u8>) -> Vec<u8> {
 
 /// The checksums of all prefixes of a section, from none of its bytes to all of them.
 fn sums(bytes: &[u8]) -> Vec<Checksum> {
-    let mut sum = Checksum::NOTHING;
+    let mut sum = Checksum::EMPTY;
     let mut sums = Vec::with_capacity(bytes.len() + 1);
     sums.push(sum);
     for byte in bytes {
-        sum = sum.and(*byte);
+        sum = sum.with_byte(*byte);
         sums.push(sum);
     }
     sums
@@ -59,14 +59,14 @@ fn sums(bytes: &[u8]) -> Vec<Checksum> {
 
 /// True if a proper prefix of the bytes, followed by erased flash, has the checksum of all of them. Bytes at the end
 /// that equal erased flash do not count, since losing them changes nothing.
-fn a_beginning_passes(bytes: &[u8], sums: &[Checksum]) -> bool {
+fn has_undetected_prefix(bytes: &[u8], sums: &[Checksum]) -> bool {
     // The checksum that a prefix must have so that the erased bytes after it give the checksum of all bytes.
     let mut needed = sums[bytes.len()];
-    let mut is_whole = true;
+    let mut is_tail_erased = true;
     for (byte, beginning) in bytes.iter().zip(&sums[..bytes.len()]).rev() {
-        needed = before(needed, ERASED);
-        is_whole &= *byte == ERASED;
-        if !is_whole && *beginning == needed {
+        needed = without_last_byte(needed, ERASED);
+        is_tail_erased &= *byte == ERASED;
+        if !is_tail_erased && *beginning == needed {
             return true;
         }
     }
@@ -74,7 +74,7 @@ fn a_beginning_passes(bytes: &[u8], sums: &[Checksum]) -> bool {
 }
 
 /// The checksum before `byte` was added: the inverse of [`Checksum::and`].
-const fn before(sum: Checksum, byte: u8) -> Checksum {
+const fn without_last_byte(sum: Checksum, byte: u8) -> Checksum {
     // The low half follows only from the previous high half and the byte.
     let low = sum.0 as u8;
     let out = low ^ (low << 5);
@@ -86,15 +86,15 @@ const fn before(sum: Checksum, byte: u8) -> Checksum {
 
 /// True if a length with one flipped bit gives the same checksum, with erased flash after the section. No board
 /// accepts more than [`SPACE`] bytes.
-fn another_length_passes(length: u16, sums: &[Checksum]) -> bool {
-    let own_sum = sums[usize::from(length) - CHECKED];
+fn has_undetected_length(length: u16, sums: &[Checksum]) -> bool {
+    let own_sum = sums[usize::from(length) - CRC_COVERS_FROM];
     let is_one_off = |other: u16| (other ^ length).is_power_of_two();
-    let shorter = (CHECKED as u16 + 1..length)
-        .any(|other| is_one_off(other) && sums[usize::from(other) - CHECKED] == own_sum);
+    let shorter = (CRC_COVERS_FROM as u16 + 1..length)
+        .any(|other| is_one_off(other) && sums[usize::from(other) - CRC_COVERS_FROM] == own_sum);
     let mut sum = own_sum;
     shorter
         || (length..SPACE).any(|last| {
-            sum = sum.and(ERASED);
+            sum = sum.with_byte(ERASED);
             is_one_off(last + 1) && sum == own_sum
         })
 }
@@ -117,18 +117,19 @@ mod tests {
 
     /// Reference for [`another_length_passes`], on the bytes that the flash would hold.
     fn another_length_has_the_sum(section: &[u8]) -> bool {
-        let sum = Checksum::of(&section[CHECKED..]);
+        let sum = Checksum::of(&section[CRC_COVERS_FROM..]);
         let mut flash = section.to_vec();
         flash.resize(SPACE.into(), ERASED);
         let lengths = (0..16).map(|bit| section.len() ^ 1 << bit);
-        let mut lengths = lengths.filter(|length| (CHECKED + 1..=flash.len()).contains(length));
-        lengths.any(|length| Checksum::of(&flash[CHECKED..length]) == sum)
+        let mut lengths =
+            lengths.filter(|length| (CRC_COVERS_FROM + 1..=flash.len()).contains(length));
+        lengths.any(|length| Checksum::of(&flash[CRC_COVERS_FROM..length]) == sum)
     }
 
     /// Finds the two bytes that change one checksum into another.
     fn pair(from: Checksum, to: Checksum) -> [u8; 2] {
         let pairs = (0..=u16::MAX).map(u16::to_le_bytes);
-        let mut right = pairs.filter(|[low, high]| from.and(*low).and(*high) == to);
+        let mut right = pairs.filter(|[low, high]| from.with_byte(*low).with_byte(*high) == to);
         right.next().expect("any two sums are two bytes apart")
     }
 
@@ -136,7 +137,7 @@ mod tests {
     fn every_byte_of_a_sum_can_be_taken_back() {
         for sum in (0..=u16::MAX).map(Checksum) {
             for byte in 0..=u8::MAX {
-                assert_eq!(before(sum.and(byte), byte), sum);
+                assert_eq!(without_last_byte(sum.with_byte(byte), byte), sum);
             }
         }
     }
@@ -150,23 +151,24 @@ mod tests {
                 let mut bytes: Vec<u8> = (0..length as u32 - 2)
                     .map(|n| ((n * n) >> 3) as u8)
                     .collect();
-                if other <= CHECKED || (bytes.len() + 1..length).contains(&other) {
+                if other <= CRC_COVERS_FROM || (bytes.len() + 1..length).contains(&other) {
                     continue;
                 }
                 // A shorter length: the checksum there. A longer one: a checksum that the erased bytes do not change.
-                let erased = |from| (length..other).fold(from, |sum: Checksum, _| sum.and(ERASED));
+                let erased =
+                    |from| (length..other).fold(from, |sum: Checksum, _| sum.with_byte(ERASED));
                 let target = match other < length {
-                    true => Some(Checksum::of(&bytes[CHECKED..other])),
+                    true => Some(Checksum::of(&bytes[CRC_COVERS_FROM..other])),
                     false => (0..=u16::MAX)
                         .map(Checksum)
                         .find(|sum| erased(*sum) == *sum),
                 };
                 let Some(target) = target else { continue };
-                bytes.extend(pair(Checksum::of(&bytes[CHECKED..]), target));
+                bytes.extend(pair(Checksum::of(&bytes[CRC_COVERS_FROM..]), target));
                 assert!(another_length_has_the_sum(&bytes), "{length} and {other}");
-                let sums = sums(&bytes[CHECKED..]);
+                let sums = sums(&bytes[CRC_COVERS_FROM..]);
                 assert!(
-                    another_length_passes(length as u16, &sums),
+                    has_undetected_length(length as u16, &sums),
                     "{length} and {other}"
                 );
                 found[usize::from(other > length)] += 1;
@@ -188,31 +190,31 @@ mod tests {
         ) {
             let mut bytes = bytes;
             bytes.extend(std::vec![ERASED; erased]);
-            prop_assert_eq!(a_beginning_passes(&bytes, &sums(&bytes)), a_beginning_has_the_sum(&bytes));
+            prop_assert_eq!(has_undetected_prefix(&bytes, &sums(&bytes)), a_beginning_has_the_sum(&bytes));
             // Two more bytes can always be chosen so that this beginning has the checksum of all bytes.
             let end = end.min(bytes.len());
             let mut cut = bytes.clone();
             cut[end..].fill(ERASED);
-            let target = Checksum::of(&cut).and(ERASED).and(ERASED);
+            let target = Checksum::of(&cut).with_byte(ERASED).with_byte(ERASED);
             bytes.extend(pair(Checksum::of(&bytes), target));
-            prop_assert_eq!(a_beginning_passes(&bytes, &sums(&bytes)), a_beginning_has_the_sum(&bytes));
+            prop_assert_eq!(has_undetected_prefix(&bytes, &sums(&bytes)), a_beginning_has_the_sum(&bytes));
             let differs = cut[end..].iter().chain(&[ERASED; 2]).ne(&bytes[end..]);
-            prop_assert_eq!(a_beginning_passes(&bytes, &sums(&bytes)), differs || a_beginning_has_the_sum(&bytes));
+            prop_assert_eq!(has_undetected_prefix(&bytes, &sums(&bytes)), differs || a_beginning_has_the_sum(&bytes));
         }
 
         #[test]
         fn a_sealed_section_has_its_length_and_sum_and_at_most_some_bytes_more(
-            bytes in prop::collection::vec(any::<u8>(), CHECKED..600),
+            bytes in prop::collection::vec(any::<u8>(), CRC_COVERS_FROM..600),
         ) {
             let section = sealed(bytes.clone());
             let length = u16::from_le_bytes([section[LENGTH], section[LENGTH + 1]]);
             let crc = u16::from_le_bytes([section[CRC], section[CRC + 1]]);
             prop_assert_eq!(usize::from(length), section.len());
-            prop_assert_eq!(crc, Checksum::of(&section[CHECKED..]).0);
+            prop_assert_eq!(crc, Checksum::of(&section[CRC_COVERS_FROM..]).0);
             prop_assert!(section.len() <= bytes.len() + 3);
-            prop_assert!(!a_beginning_has_the_sum(&section[CHECKED..]));
+            prop_assert!(!a_beginning_has_the_sum(&section[CRC_COVERS_FROM..]));
             prop_assert!(!another_length_has_the_sum(&section));
-            prop_assert_eq!(&section[CHECKED..bytes.len()], &bytes[CHECKED..]);
+            prop_assert_eq!(&section[CRC_COVERS_FROM..bytes.len()], &bytes[CRC_COVERS_FROM..]);
         }
     }
 }

@@ -11,7 +11,7 @@ use super::rows::{PairSample, columns, eight_by_eight, lanes, rows_of, sine, spl
 use super::tally::{STEPS_BAND, Tally, margin_band};
 
 /// The comparison of guard and floating point over all pairs of an end.
-pub struct EndWalk<'a> {
+pub struct EndComparison<'a> {
     fixed: lizard_core::guard::five_bar::FiveBar<'a>,
     exact: FiveBar,
     /// Smallest allowed type-2 and type-1 margins, from robot.toml; below, in the firmware's integers.
@@ -25,7 +25,7 @@ pub struct EndWalk<'a> {
     crossing_band: f64,
 }
 
-impl<'a> EndWalk<'a> {
+impl<'a> EndComparison<'a> {
     pub fn new(robot: &Robot, guard: &'a CoreRobot, maps: &'a CellMaps, end: End) -> Self {
         let limits = guard.limits();
         let [margin_band, crossing_band] = bands(robot, end);

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use lizard_kinematics::{End, Side};
 use lizard_robot::{CellMaps, CoreRobot, Robot, servo};
 
-use super::end_walk::{EndWalk, bands};
+use super::end_walk::{EndComparison, bands};
 use super::positions::Positions;
 use super::rows::{CUTS, PairSample};
 use super::side_walk::{SideWalk, leg};
@@ -45,7 +45,7 @@ impl<'a> Walk<'a> {
         let (part, cut) = (index / CUTS, index % CUTS);
         let positions_of = |servos: [usize; 2]| servos.map(|servo| self.positions(servo));
         if let Some(end) = End::ALL.get(part) {
-            let walk = EndWalk::new(self.robot, self.guard, &self.maps, *end);
+            let walk = EndComparison::new(self.robot, self.guard, &self.maps, *end);
             walk.walk(positions_of(end.servos()), self.share, cut, progress)
         } else {
             let side = Side::ALL[part - End::ALL.len()];

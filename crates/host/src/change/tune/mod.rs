@@ -5,7 +5,7 @@ mod report;
 use std::io::{self, Write};
 
 use lizard_robot::{CheckedGait, Robot};
-use lizard_tune::{BuiltGait, Comparison, Kind, NoTuning, ScoredParameters, Tuning, trials};
+use lizard_tune::{BuiltGait, Comparison, Kind, ScoredParameters, Tuning, TuningError, trials};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -106,8 +106,8 @@ fn tune(robot: &Robot, args: &Args) -> Result<Option<Comparison>, Failure> {
     )
     .map_err(|no| {
         Failure::Input(match no {
-            NoTuning::Goal(_) => no.to_string(),
-            NoTuning::Rate { .. } => format!("--rate {no}"),
+            TuningError::Goal(_) => no.to_string(),
+            TuningError::Rate { .. } => format!("--rate {no}"),
         })
     })?;
     let best = search_all(&tuning, args)?;

@@ -73,7 +73,7 @@ pub(in crate::drive) struct Robot {
 impl Robot {
     /// Names a robot as its board will.
     pub(in crate::drive) fn of(robot: &lizard_core::numbers::robot::Robot) -> Self {
-        let name = robot.label().map(char::from).collect();
+        let name = robot.robot_name().map(char::from).collect();
         let hash = format!("{:08x}", robot.hash());
         Self { name, hash }
     }

@@ -83,7 +83,7 @@ fn dialogue(finder: &BoardFinder, file: Option<PathBuf>) -> Result<(), Failure> 
     if io::stdin().is_terminal() && io::stdout().is_terminal() {
         match dialogue.with_terminal(finder, board, &first) {
             // The user has closed the terminal.
-            Err(Failure::Io(_)) if !terminal::is_there() => Ok(()),
+            Err(Failure::Io(_)) if !terminal::is_open() => Ok(()),
             ended => ended,
         }
     } else {
@@ -241,7 +241,7 @@ impl Dialogue {
 
     /// Handles the pressed keys; returns true if the user quits.
     fn handle_keys(&mut self, screen: &mut Screen, prompt: &mut Prompt) -> Result<bool, Failure> {
-        if !terminal::is_there() {
+        if !terminal::is_open() {
             return Ok(true);
         }
         while event::poll(Duration::ZERO)? {

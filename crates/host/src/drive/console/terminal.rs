@@ -6,7 +6,7 @@ use std::thread;
 use std::time::Duration;
 
 /// True if the terminal still exists. Reading a closed terminal would return keys forever.
-pub fn is_there() -> bool {
+pub fn is_open() -> bool {
     io::stdin().is_terminal()
 }
 
@@ -23,7 +23,7 @@ pub fn end_when_gone() {
         let mut checks_gone = 0;
         while checks_gone < CHECKS {
             thread::sleep(CHECK_INTERVAL);
-            checks_gone = if is_there() { 0 } else { checks_gone + 1 };
+            checks_gone = if is_open() { 0 } else { checks_gone + 1 };
         }
         std::process::exit(0)
     };

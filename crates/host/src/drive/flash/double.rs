@@ -23,11 +23,11 @@ pub struct Double {
     /// True if the loader never answers.
     pub is_mute: bool,
     /// The number of the byte to the board that is lost, counted from 0.
-    pub lost_to: Option<usize>,
+    pub lost_byte_to_board: Option<usize>,
     /// The number of the byte from the board that is lost, counted from 0.
-    pub lost_from: Option<usize>,
+    pub lost_byte_from_board: Option<usize>,
     /// An address in flash, and its bits that are stuck at 0.
-    pub worn: Option<(usize, u8)>,
+    pub stuck_bits: Option<(usize, u8)>,
     /// The number of written pages after which the port vanishes.
     pub unplugged_after: Option<usize>,
     /// The addresses of written pages, in order.
@@ -35,7 +35,7 @@ pub struct Double {
     /// The number of resets so far.
     pub resets: usize,
     /// True if the last command started the program in flash.
-    pub was_left: bool,
+    pub has_started_program: bool,
     /// The number of bytes sent to the board so far, lost ones included.
     pub received: usize,
     /// The number of bytes sent by the board so far, lost ones included.
@@ -71,13 +71,13 @@ impl Double {
             garbage: Vec::new(),
             ignored_calls: 0,
             is_mute: false,
-            lost_to: None,
-            lost_from: None,
-            worn: None,
+            lost_byte_to_board: None,
+            lost_byte_from_board: None,
+            stuck_bits: None,
             unplugged_after: None,
             written: Vec::new(),
             resets: 0,
-            was_left: false,
+            has_started_program: false,
             received: 0,
             sent: 0,
             is_listening: false,
@@ -142,13 +142,13 @@ impl Double {
             b'Q' => {
                 // ATmegaBOOT keeps listening until nothing arrives for a while.
                 self.is_listening = self.kind == Kind::AtmegaBoot;
-                self.was_left = true;
+                self.has_started_program = true;
             }
             _ => {}
         }
         answer.push(0x10);
         for byte in answer {
-            if self.lost_from != Some(self.sent) {
+            if self.lost_byte_from_board != Some(self.sent) {
                 self.out.push_back(byte);
             }
             self.sent += 1;
@@ -159,7 +159,7 @@ impl Double {
         assert_eq!(bytes.len(), 128, "a page of an ATmega328P");
         assert_eq!(self.address % 128, 0, "pages begin where pages begin");
         self.flash[self.address..self.address + 128].copy_from_slice(bytes);
-        if let Some((address, bits)) = self.worn {
+        if let Some((address, bits)) = self.stuck_bits {
             self.flash[address] &= !bits;
         }
         self.written.push(self.address);
@@ -172,7 +172,7 @@ impl Board for Double {
         self.errors = 0;
         self.is_listening = !self.is_mute && baud == self.kind.baud();
         self.calls_to_ignore = self.ignored_calls;
-        self.was_left = false;
+        self.has_started_program = false;
         self.command.clear();
         self.out.clear();
         self.out.extend(&self.garbage);
@@ -203,7 +203,7 @@ impl Write for Double {
             return Err(io::Error::from_raw_os_error(5));
         }
         for byte in bytes {
-            let lost = self.lost_to == Some(self.received);
+            let lost = self.lost_byte_to_board == Some(self.received);
             self.received += 1;
             if lost || !self.is_listening {
                 continue;

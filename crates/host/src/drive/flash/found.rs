@@ -115,7 +115,7 @@ impl fmt::Display for FlashContents {
             }
             Program::Lizard { mark, is_different } => {
                 let [major, minor, patch] = mark.version;
-                if is_different && mark == Mark::HERE {
+                if is_different && mark == Mark::OWN {
                     f.write_str("another build of ")?;
                 }
                 write!(f, "lizard {major}.{minor}.{patch}")?;

@@ -160,7 +160,7 @@ fn write(
     let start = Instant::now();
     let done = upload::upload(&mut loader, image, target, &mut |event| match event {
         Event::Found(found) => bar.suspend(|| println(&found.to_string())),
-        Event::Again {
+        Event::Retry {
             trouble,
             called,
             next,

@@ -19,7 +19,7 @@ use crate::drive::console::link::is_gone;
 
 const OK: u8 = 0x10;
 const IN_SYNC: u8 = 0x14;
-const END: u8 = 0x20;
+const CRC_EOP: u8 = 0x20;
 const GET_SYNC: u8 = 0x30;
 const LEAVE: u8 = 0x51;
 const LOAD_ADDRESS: u8 = 0x55;
@@ -74,7 +74,7 @@ pub trait Board: Read + Write {
 pub struct Timeouts {
     /// Time after a reset in which the loader blinks and does not listen. Bytes sent meanwhile overflow its
     /// receiver, and half a command makes it give up.
-    pub blinks: Duration,
+    pub blink_time: Duration,
     /// Time for the answer to one call.
     pub call: Duration,
     /// Time after the first answer in which late answers to earlier calls are discarded.
@@ -87,7 +87,7 @@ pub struct Timeouts {
 impl Default for Timeouts {
     fn default() -> Self {
         Self {
-            blinks: Duration::from_millis(400),
+            blink_time: Duration::from_millis(400),
             call: Duration::from_millis(110),
             quiet: Duration::from_millis(40),
             answer: Duration::from_secs(2),
@@ -103,7 +103,7 @@ pub enum LoaderError {
     Silent,
     /// An answer of the wrong form.
     #[error("the board's answers are garbled")]
-    OutOfStep,
+    Garbled,
     /// The port has vanished.
     #[error("the port is gone: the board was unplugged, or its cable is loose")]
     Gone,
@@ -114,8 +114,8 @@ pub enum LoaderError {
 
 impl LoaderError {
     /// True if another reset may help.
-    pub fn may_pass(&self) -> bool {
-        matches!(self, Self::Silent | Self::OutOfStep)
+    pub fn is_transient(&self) -> bool {
+        matches!(self, Self::Silent | Self::Garbled)
     }
 }
 
@@ -155,10 +155,10 @@ impl<B: Board> Loader<B> {
     pub fn call(&mut self, kind: Kind) -> Result<(), LoaderError> {
         self.board.reset(kind.baud())?;
         // Output of the program from before the reset arrives in this time, too.
-        self.skip(self.timeouts.blinks)?;
+        self.skip(self.timeouts.blink_time)?;
         for _ in 0..CALLS {
-            self.board.write_all(&[GET_SYNC, END])?;
-            if self.finds_answer(self.timeouts.call)? {
+            self.board.write_all(&[GET_SYNC, CRC_EOP])?;
+            if self.wait_for_sync(self.timeouts.call)? {
                 return self.skip(self.timeouts.quiet);
             }
         }
@@ -211,20 +211,20 @@ impl<B: Board> Loader<B> {
     }
 
     fn command(&mut self, bytes: &[u8], answer: &mut [u8]) -> Result<(), LoaderError> {
-        self.board.write_all(&[bytes, &[END]].concat())?;
+        self.board.write_all(&[bytes, &[CRC_EOP]].concat())?;
         let mut end = Deadline::after(self.timeouts.answer);
         if self.byte(&mut end)? != IN_SYNC {
-            return Err(LoaderError::OutOfStep);
+            return Err(LoaderError::Garbled);
         }
-        self.take(answer, &mut end)?;
+        self.read_exact(answer, &mut end)?;
         if self.byte(&mut end)? != OK {
-            return Err(LoaderError::OutOfStep);
+            return Err(LoaderError::Garbled);
         }
         Ok(())
     }
 
     /// Searches for [`IN_SYNC`] followed by [`OK`], after any other bytes.
-    fn finds_answer(&mut self, time: Duration) -> Result<bool, LoaderError> {
+    fn wait_for_sync(&mut self, time: Duration) -> Result<bool, LoaderError> {
         let mut end = Deadline::after(time);
         let mut last = 0;
         loop {
@@ -257,12 +257,12 @@ impl<B: Board> Loader<B> {
 
     fn byte(&mut self, end: &mut Deadline) -> Result<u8, LoaderError> {
         let mut byte = [0];
-        self.take(&mut byte, end)?;
+        self.read_exact(&mut byte, end)?;
         Ok(byte[0])
     }
 
     /// Fills `bytes` and reads no more: further bytes may be for another reader.
-    fn take(&mut self, mut bytes: &mut [u8], end: &mut Deadline) -> Result<(), LoaderError> {
+    fn read_exact(&mut self, mut bytes: &mut [u8], end: &mut Deadline) -> Result<(), LoaderError> {
         while !bytes.is_empty() {
             let count = self.read(bytes)?;
             bytes = &mut bytes[count..];

@@ -55,7 +55,7 @@ impl Target {
     ///
     /// # Errors
     /// Fails if the board has too little room, or may have too little.
-    pub fn has_room(self, image: &Image, loader: Kind) -> Result<(), TooLong> {
+    pub fn check_room(self, image: &Image, loader: Kind) -> Result<(), TooLong> {
         let is_nano = self.model == Some(Model::Nano) || loader == Kind::AtmegaBoot;
         let in_doubt = !is_nano && self.model.is_none() && self.may_be_nano;
         let room = if is_nano || in_doubt { NANO_BOOT } else { BOOT };

@@ -54,9 +54,10 @@ impl View<'_> {
         let coordinates = |name: &str, position: Joint| {
             format!("{name} ({:.1}, {:.1}) mm", position.x, position.y)
         };
-        let (x, y) = self.page(head + Vector::new(0.0, SKIN_BEYOND * self.grown() + NAME_BEYOND));
+        let (x, y) =
+            self.page(head + Vector::new(0.0, SKIN_BEYOND * self.size_ratio() + NAME_BEYOND));
         group = group.add(text_middle(&coordinates("head", head), (x, y), 18.0));
-        let (x, y) = self.page(tail + Vector::new(0.0, -26.0 * self.grown() - 8.0));
+        let (x, y) = self.page(tail + Vector::new(0.0, -26.0 * self.size_ratio() - 8.0));
         group = group.add(text_middle(&coordinates("tail", tail), (x, y), 18.0));
         for (side, slider) in [(-1.0, solution.left), (1.0, solution.right)] {
             let anchor = if side < 0.0 {
@@ -64,7 +65,7 @@ impl View<'_> {
             } else {
                 Anchor::Start
             };
-            let (x, y) = self.page(Vector::new(side * 50.0 * self.grown(), 0.0));
+            let (x, y) = self.page(Vector::new(side * 50.0 * self.size_ratio(), 0.0));
             let travel = if slider.s.abs() < 0.05 {
                 "s = 0.0 mm".to_owned()
             } else {

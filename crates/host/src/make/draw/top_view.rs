@@ -65,7 +65,7 @@ impl<'a> View<'a> {
         let joints = legs.iter().flat_map(|leg| leg.joints);
         let wide = joints.map(|joint| joint.x.abs()).fold(1.0, f64::max);
         let ends = [solution.head_point(), solution.tail_point()];
-        let beyond = SKIN_BEYOND * view.grown() + NAME_BEYOND;
+        let beyond = SKIN_BEYOND * view.size_ratio() + NAME_BEYOND;
         let long = ends.map(|end| end.y.abs()).into_iter().fold(1.0, f64::max) + beyond;
         let scales = [(SIZE.0, MARGIN.0, wide), (SIZE.1, MARGIN.1, long)];
         let scales = scales.map(|(page, margin, mm)| (page / 2.0 - margin) / mm);
@@ -84,7 +84,7 @@ impl<'a> View<'a> {
     }
 
     /// The robot's size relative to the paper's robot.
-    pub(super) fn grown(&self) -> f64 {
+    pub(super) fn size_ratio(&self) -> f64 {
         self.robot.plate().half.y / SKIN_LENGTH
     }
 
@@ -119,7 +119,7 @@ impl<'a> View<'a> {
 
     /// Draws a lizard's pale outline, so that the mechanism looks like an animal.
     fn draw_skin(&self, group: Group) -> Group {
-        let grown = self.grown();
+        let grown = self.size_ratio();
         let around = |point: Joint, x: f64, y: f64| {
             let (x, y) = self.page(point + Vector::new(x, y) * grown);
             format!("{x:.1} {y:.1}")

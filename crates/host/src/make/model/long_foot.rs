@@ -46,7 +46,7 @@ impl FromStr for LongFoot {
 }
 
 /// The length error of each foot, mm, servo order.
-pub(super) fn lengths(given: &[LongFoot]) -> Result<[f64; 4], Failure> {
+pub(super) fn length_errors(given: &[LongFoot]) -> Result<[f64; 4], Failure> {
     let mut long = [None; 4];
     for LongFoot { leg, mm } in given {
         if long[*leg].replace(*mm).is_some() {
@@ -90,9 +90,9 @@ mod tests {
     #[test]
     fn a_foot_has_one_length() {
         let foot = |leg, mm| LongFoot { leg, mm };
-        let all = lengths(&[foot(3, 0.5), foot(1, -1.0)]).expect("two feet");
+        let all = length_errors(&[foot(3, 0.5), foot(1, -1.0)]).expect("two feet");
         assert_eq!(all, [0.0, -1.0, 0.0, 0.5]);
-        let twice = lengths(&[foot(0, 0.0), foot(0, 1.0)]).expect_err("one foot");
+        let twice = length_errors(&[foot(0, 0.0), foot(0, 1.0)]).expect_err("one foot");
         assert_eq!(twice.to_string(), "--long-foot LF is given twice");
     }
 }

@@ -67,13 +67,13 @@ pub fn run(args: Args) -> Result<(), Failure> {
     check_options(&args, format)?;
     let robot = args.robot.load()?;
     let assembly = Assembly::new(&robot);
-    assembly.measures_fit()?;
+    assembly.check_measures()?;
     let neutral = robot.lizard().solve(&robot.neutral())?;
     let mut scene = Scene::of(&assembly);
     for (long, more) in scene
         .long
         .iter_mut()
-        .zip(long_foot::lengths(&args.long_foot)?)
+        .zip(long_foot::length_errors(&args.long_foot)?)
     {
         *long += more;
     }

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use lizard_parts::{Answer, Assembly, ENOUGH, NearestPair, Proof, Questions, Unfit};
+use lizard_parts::{Answer, Assembly, FAR_MM, NearestPair, Proof, Questions, Unfit};
 use lizard_robot::servo::NAMES;
 use serde::{Deserialize, Serialize};
 
@@ -109,7 +109,7 @@ fn complete_proof(questions: &Questions, answers: Option<Vec<Answer>>) -> Proof 
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.spread.robot.load()?;
     let assembly = Assembly::new(&robot);
-    assembly.measures_fit()?;
+    assembly.check_measures()?;
     let questions = Questions::new(&assembly, |_, _| true);
     let count = questions.count();
     if let Some(part) = args.spread.part() {
@@ -155,7 +155,7 @@ fn print(proof: &Proof, shows_all: bool, out: &mut impl Write) -> io::Result<()>
     let list = |near: &[NearestPair], out: &mut dyn Write| -> io::Result<()> {
         let near: Vec<_> = near
             .iter()
-            .filter(|near| near.proved < ENOUGH * 0.9)
+            .filter(|near| near.proved < FAR_MM * 0.9)
             .collect();
         let pairs = if shows_all {
             near.len()

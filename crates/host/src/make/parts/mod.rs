@@ -82,7 +82,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         parts.extend(coupon(robot.parts()));
     }
     if !args.coupon {
-        assembly.measures_fit()?;
+        assembly.check_measures()?;
         fit::proof(&assembly).judge().map_err(Unfit::from)?;
         parts.extend(match args.corner {
             true => assembly.corner(),

@@ -56,7 +56,7 @@ pub struct Design {
 }
 
 /// Number of points in a piece: enough to occupy all cores.
-const AT_ONCE: usize = 64;
+const PIECE_SIZE: usize = 64;
 
 /// The search, in pieces that do not depend on each other.
 pub struct Search<'a> {
@@ -80,19 +80,23 @@ impl<'a> Search<'a> {
             demands,
             progress,
         };
-        let points = AT_ONCE * own(search.pieces());
+        let points = PIECE_SIZE * own(search.pieces());
         progress.set_length(points.min(search.points.len()) as u64);
         search
     }
 
     /// The number of all pieces.
     pub fn pieces(&self) -> usize {
-        self.points.len().div_ceil(AT_ONCE)
+        self.points.len().div_ceil(PIECE_SIZE)
     }
 
     /// The designs of one piece that meet the demands.
     pub fn piece(&self, index: usize) -> Vec<Design> {
-        let points = self.points.chunks(AT_ONCE).nth(index).unwrap_or_default();
+        let points = self
+            .points
+            .chunks(PIECE_SIZE)
+            .nth(index)
+            .unwrap_or_default();
         let designs = points.par_iter().filter_map(|point| {
             self.progress.inc(1);
             design(*point, &self.demands)
@@ -119,7 +123,7 @@ pub fn design(proportions: Proportions, demands: &Demands) -> Option<Design> {
     let (neutral, sweep) = (90..=170)
         .map(|neutral| {
             let neutral = f64::from(neutral);
-            (neutral, widest(&bars, neutral, demands))
+            (neutral, largest_sweep(&bars, neutral, demands))
         })
         .reduce(|best, next| if next.1 > best.1 { next } else { best })?;
     if sweep < demands.sweep {
@@ -140,7 +144,7 @@ pub fn design(proportions: Proportions, demands: &Demands) -> Option<Design> {
 }
 
 /// The largest sweep about a neutral angle within all limits, degrees.
-fn widest(bars: &FiveBar, neutral: f64, demands: &Demands) -> f64 {
+fn largest_sweep(bars: &FiveBar, neutral: f64, demands: &Demands) -> f64 {
     let (mut safe, mut unsafe_from) = (0.0, demands.travel.min(89.9));
     if !meets_demands(bars, neutral, safe, demands) {
         return 0.0;
@@ -157,7 +161,7 @@ fn widest(bars: &FiveBar, neutral: f64, demands: &Demands) -> f64 {
 }
 
 /// Sample positions across the sweep, from -1 to 1.
-const ACROSS: [f64; 9] = [-1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75, 1.0];
+const SWEEP_SAMPLES: [f64; 9] = [-1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75, 1.0];
 
 fn meets_demands(bars: &FiveBar, neutral: f64, sweep: f64, demands: &Demands) -> bool {
     let limits = &demands.limits;
@@ -169,9 +173,9 @@ fn meets_demands(bars: &FiveBar, neutral: f64, sweep: f64, demands: &Demands) ->
             .map_or(f64::NAN, |pose| pose.d)
     };
     let nominal = span(neutral, neutral);
-    ACROSS.iter().all(|&i| {
+    SWEEP_SAMPLES.iter().all(|&i| {
         let left = neutral + i * sweep;
-        ACROSS.iter().all(|&j| {
+        SWEEP_SAMPLES.iter().all(|&j| {
             let right = 180.0 - neutral + j * sweep;
             let travel = span(left, neutral + j * sweep) - nominal;
             limits.broken(Check::StrokeLeft, travel).is_none()
@@ -197,17 +201,20 @@ fn slider(bars: &FiveBar, demands: &Demands) -> Slider {
 fn quality(bars: &FiveBar, neutral: f64, sweep: f64) -> (f64, f64) {
     let mut smallest = f64::INFINITY;
     let mut sum = 0.0;
-    for i in ACROSS {
+    for i in SWEEP_SAMPLES {
         let left = neutral + i * sweep;
         smallest = smallest.min(left.to_radians().sin());
-        for j in ACROSS {
+        for j in SWEEP_SAMPLES {
             if let Ok(pose) = bars.forward(left, 180.0 - neutral + j * sweep) {
                 smallest = smallest.min(pose.margin());
                 sum += pose.lci();
             }
         }
     }
-    (smallest, sum / (ACROSS.len() * ACROSS.len()) as f64)
+    (
+        smallest,
+        sum / (SWEEP_SAMPLES.len() * SWEEP_SAMPLES.len()) as f64,
+    )
 }
 
 fn rank(designs: &mut [Design]) {

@@ -3,7 +3,7 @@
 use super::sample::Sample;
 
 /// A function that returns the error of a form at a sample; `None` if the form has no real value there.
-pub type Miss = fn(&Sample) -> Option<f64>;
+pub type ErrorFn = fn(&Sample) -> Option<f64>;
 
 /// A printed equation.
 pub struct Equation {
@@ -12,16 +12,16 @@ pub struct Equation {
     /// The equation as printed.
     pub printed: &'static str,
     /// The error of the printed form.
-    pub miss: Miss,
+    pub miss: ErrorFn,
     /// Unit of every error of this equation.
     pub unit: &'static str,
     /// The error if right-hand angles are read clockwise from -x, where the paper's drawing
     /// suggests it.
-    pub clockwise: Option<Miss>,
+    pub clockwise: Option<ErrorFn>,
     /// The corrected form, and its error.
-    pub corrected: Option<(&'static str, Miss)>,
+    pub corrected: Option<(&'static str, ErrorFn)>,
     /// A special case to examine, and the error of the printed form there; it has no verdict of its own.
-    pub aside: Option<(&'static str, Miss)>,
+    pub special_case: Option<(&'static str, ErrorFn)>,
 }
 
 impl Equation {
@@ -30,7 +30,7 @@ impl Equation {
         place: &'static str,
         printed: &'static str,
         unit: &'static str,
-        miss: Miss,
+        miss: ErrorFn,
     ) -> Self {
         Self {
             place,
@@ -39,25 +39,25 @@ impl Equation {
             unit,
             clockwise: None,
             corrected: None,
-            aside: None,
+            special_case: None,
         }
     }
 
     /// Adds the error of the clockwise reading.
-    pub const fn clockwise(mut self, miss: Miss) -> Self {
+    pub const fn clockwise(mut self, miss: ErrorFn) -> Self {
         self.clockwise = Some(miss);
         self
     }
 
     /// Adds the corrected form.
-    pub const fn corrected(mut self, form: &'static str, miss: Miss) -> Self {
+    pub const fn corrected(mut self, form: &'static str, miss: ErrorFn) -> Self {
         self.corrected = Some((form, miss));
         self
     }
 
     /// Adds a special case to examine.
-    pub const fn with_special_place(mut self, place: &'static str, miss: Miss) -> Self {
-        self.aside = Some((place, miss));
+    pub const fn with_special_place(mut self, place: &'static str, miss: ErrorFn) -> Self {
+        self.special_case = Some((place, miss));
         self
     }
 }
@@ -76,7 +76,7 @@ impl Misses {
     const ROUNDING: f64 = 1e-6;
 
     /// Evaluates a form at all samples.
-    pub fn of(miss: Miss, samples: &[Sample]) -> Self {
+    pub fn of(miss: ErrorFn, samples: &[Sample]) -> Self {
         let mut worst = 0.0_f64;
         let mut unreal = 0usize;
         for sample in samples {

@@ -74,7 +74,7 @@ pub const EQUATIONS: &[Equation] = &[
         "θ2 = 2 atan((-E + sqrt(E² + 4DF))/2D), K4 = -l4 cos θ4 + l1 cos θ1 + l0",
         "deg",
         |s| {
-            let (d, e, f) = def(s, 1.0);
+            let (d, e, f) = def_coefficients(s, 1.0);
             let under = e * e + 4.0 * d * f;
             let real = (under >= 0.0).then(|| (-e + under.sqrt()) / (2.0 * d))?;
             Some(angle_error(2.0 * real.atan(), s.angles().t[2]))
@@ -83,7 +83,7 @@ pub const EQUATIONS: &[Equation] = &[
     .corrected(
         "θ2 = 2 atan((E - sqrt(E² - 4DF))/2D), K4 = -l4 cos θ4 + l1 cos θ1 - l0",
         |s| {
-            let (d, e, f) = def(s, -1.0);
+            let (d, e, f) = def_coefficients(s, -1.0);
             let under = e * e - 4.0 * d * f;
             let real = (under >= 0.0).then(|| (e - under.sqrt()) / (2.0 * d))?;
             Some(angle_error(2.0 * real.atan(), s.angles().t[2]))
@@ -198,7 +198,7 @@ fn abc(s: &Sample, theta4: f64) -> (f64, f64, f64) {
 }
 
 /// D, E, F as printed, with the sign of l0 in K4 given.
-fn def(s: &Sample, base_sign: f64) -> (f64, f64, f64) {
+fn def_coefficients(s: &Sample, base_sign: f64) -> (f64, f64, f64) {
     let Links {
         l0, l1, l2, l3, l4, ..
     } = s.lizard.links;

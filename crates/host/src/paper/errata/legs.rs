@@ -104,7 +104,7 @@ fn follower(s: &Sample, legs: &[usize], sign: f64, h: Option<f64>) -> Option<f64
 
 /// The error of the coupler's angle by J, K, L, with the sign of the terms in lg12: -1 as printed, +1 as it should
 /// be. In a parallelogram this angle is 0.
-fn coupler(s: &Sample, legs: &[usize], slip: f64, sign: f64) -> Option<f64> {
+fn coupler(s: &Sample, legs: &[usize], term_sign: f64, sign: f64) -> Option<f64> {
     let Leg {
         ground,
         crank,
@@ -115,9 +115,9 @@ fn coupler(s: &Sample, legs: &[usize], slip: f64, sign: f64) -> Option<f64> {
         let c = theta.cos();
         let last = (follower * follower - ground * ground - crank * crank - coupler * coupler)
             / (2.0 * crank * coupler);
-        let j = c - ground / crank + slip * ground * c / coupler + last;
+        let j = c - ground / crank + term_sign * ground * c / coupler + last;
         let k = -2.0 * theta.sin();
-        let l = ground / crank + (slip * ground / coupler - 1.0) * c + last;
+        let l = ground / crank + (term_sign * ground / coupler - 1.0) * c + last;
         Some(angle_error(
             2.0 * half_angle_tangent(j, k, l, sign)?.atan(),
             0.0,

@@ -114,7 +114,7 @@ pub fn measure(samples: u32) -> Vec<Entry> {
                 unreal: printed.unreal,
                 unit: equation.unit,
                 aside: equation
-                    .aside
+                    .special_case
                     .map(|(place, miss)| (Misses::of(miss, &samples).worst, place)),
                 holds_clockwise: equation
                     .clockwise

@@ -28,7 +28,7 @@ pub const CODE: &str = include_str!("../../../../../firmware/code.hex");
 
 /// A robot's name and hash, as printed in the firmware's banner.
 pub fn label(robot: &CoreRobot) -> String {
-    let name: String = robot.label().map(char::from).collect();
+    let name: String = robot.robot_name().map(char::from).collect();
     format!("{name} {:08x}", robot.hash())
 }
 

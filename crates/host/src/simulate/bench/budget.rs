@@ -51,9 +51,9 @@ pub const SERVO_LIBRARY: &str = "Arduino Servo 1.3.0 (core 1.8.8, ATmega328P at 
      1500 us; its float solve is theta2 and theta3 of head and tail";
 
 /// Cycles from the control tick to the end of its slot, when the interrupts take the next frame.
-const IN_TIME: f64 = 63_000.0;
+const TICK_DEADLINE: f64 = 63_000.0;
 /// The share of these cycles that interrupts leave to main while the line is saturated in both directions.
-const LEFT_TO_MAIN: f64 = 0.87;
+const MAIN_SHARE: f64 = 0.87;
 /// Cycles of the control tick, mean and worst.
 const TICK: [f64; 2] = [5_000.0, 10_000.0];
 /// The same for a robot whose gaits leave no room for the maps of certified cells, so that the guard measures every
@@ -61,7 +61,7 @@ const TICK: [f64; 2] = [5_000.0, 10_000.0];
 const TICK_WITHOUT_MAPS: [f64; 2] = [20_000.0, 20_000.0];
 /// Longest time that another interrupt may take without delaying a servo's edge, cycles: the servo interrupts start
 /// 220 cycles early and need 60 of them before they read the timer.
-const BESIDE_SERVOS: f64 = 160.0;
+const MAX_OTHER_INTERRUPT: f64 = 160.0;
 /// Wall time that ten simulated minutes may take, s.
 const MAX_RUN_S: f64 = 60.0;
 /// Ten minutes, s.
@@ -101,11 +101,11 @@ pub fn rows(figures: &Figures) -> Vec<Row> {
         row("control tick, worst", "cycles", count(f.tick_worst), AtMost(tick_worst), None),
         row("  in a routine, mean", "cycles", f.routine_mean, AtMost(tick_mean), None),
         row("  in a routine, worst", "cycles", to_f64(f.routine_worst), AtMost(tick_worst), None),
-        row("tick to frame, line saturated", "cycles", count(f.tick_latency), AtMost(IN_TIME), None),
-        row("any other step, worst", "cycles", count(f.step), AtMost(LEFT_TO_MAIN * IN_TIME - tick_worst), None),
+        row("tick to frame, line saturated", "cycles", count(f.tick_latency), AtMost(TICK_DEADLINE), None),
+        row("any other step, worst", "cycles", count(f.step), AtMost(MAIN_SHARE * TICK_DEADLINE - tick_worst), None),
         row("main, mean per frame of a gait", "cycles", f.main, Bound::None, None),
         row("servo interrupts per frame", "cycles", Some(f.servo_interrupts), Bound::None, Some("1 513")),
-        row("longest serial interrupt", "cycles", count(f.serial_interrupt), AtMost(BESIDE_SERVOS), None),
+        row("longest serial interrupt", "cycles", count(f.serial_interrupt), AtMost(MAX_OTHER_INTERRUPT), None),
         row("CPU asleep in a gait", "%", f.asleep, AtLeast(90.0), Some("0")),
         row("flash, code", "bytes", count(f.code.into()), AtMost(START.into()), Some("5 994")),
         row("flash, the robot's section", "bytes", count(f.section.into()), AtMost(SPACE.into()), None),

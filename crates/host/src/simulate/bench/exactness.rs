@@ -59,7 +59,7 @@ impl Exactness {
                 }
                 if let (Some(current), Some(next)) = (pair[0].widths[servo], pair[1].widths[servo])
                 {
-                    step = common(step, current.abs_diff(next));
+                    step = gcd(step, current.abs_diff(next));
                 }
             }
         }
@@ -86,6 +86,6 @@ impl Exactness {
 }
 
 /// The greatest common divisor.
-fn common(a: u64, b: u64) -> u64 {
-    if b == 0 { a } else { common(b, a % b) }
+fn gcd(a: u64, b: u64) -> u64 {
+    if b == 0 { a } else { gcd(b, a % b) }
 }

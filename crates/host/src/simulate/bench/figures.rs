@@ -135,12 +135,15 @@ impl Figures {
         patrolling: Option<&Robot>,
         progress: impl Fn(&'static str),
     ) -> Result<Self, Failure> {
-        let gaits: Vec<String> = tour::gaits(robot).into_iter().map(command).collect();
+        let gaits: Vec<String> = tour::demonstration_gaits(robot)
+            .into_iter()
+            .map(command)
+            .collect();
         // A robot that only stands is measured while it stands.
         let gait = gaits.first().map_or("stand", String::as_str);
         let turn = gaits.last().map_or("stand", String::as_str);
         let moves = !gaits.is_empty();
-        let awake = || -> Result<SimulatedBoard, BoardError> {
+        let boot_board = || -> Result<SimulatedBoard, BoardError> {
             let mut board = SimulatedBoard::power_on(elf, Fidelity::DataSheet, robot)?;
             board.run_ms(1000)?;
             Ok(board)
@@ -149,30 +152,30 @@ impl Figures {
         let image = firmware::read(elf)?;
         let stack = StackDepth::of(&image).map_err(|e| Failure::Impossible(e.to_string()))?;
         progress("pulses on an idle line");
-        let mut idle = Steady::of(awake()?, gait, 20_000)?;
+        let mut idle = GaitRun::of(boot_board()?, gait, 20_000)?;
         let bytes_sent = idle.board.uno.received_by_uno().len();
         let idle_exact = Exactness::of(&mut idle.board, robot.firmware(), bytes_sent)?;
         progress("pulses on a saturated line");
-        let (mut flooded, bytes_sent) = flood(awake()?, turn)?;
+        let (mut flooded, bytes_sent) = flood(boot_board()?, turn)?;
         let flooded_exact = Exactness::of(&mut flooded, robot.firmware(), bytes_sent)?;
         progress("every command");
-        let mut session = session(awake()?, robot)?;
+        let mut session = run_all_commands(boot_board()?, robot)?;
         progress("the control tick in every motion");
-        let ticks = times(awake()?, TICK, &motions(robot))?;
+        let ticks = time_calls_under(boot_board()?, TICK, &motions(robot))?;
         let in_gaits = ticks.iter().take(robot.gaits().len());
         progress("the control tick in a routine");
         let in_routine = patrolling.map(|robot| patrol(elf, robot)).transpose()?;
         progress("the guard");
-        let guard = mean(&times(awake()?, GUARD, &[gait])?.concat());
+        let guard = mean(&time_calls_under(boot_board()?, GUARD, &[gait])?.concat());
         progress("the control tick on a saturated line");
-        let tick_latency = latency(awake()?, turn)?;
+        let tick_latency = latency(boot_board()?, turn)?;
         progress("every other step");
         let step = longest_step(elf, robot)?;
         progress("serial interrupts");
-        let serial_interrupt = longest_serial(awake, turn)?;
+        let serial_interrupt = longest_serial(boot_board, turn)?;
         progress("ten minutes of a gait");
         let start = Instant::now();
-        let long = Steady::of(awake()?, gait, LONG_RUN_MS)?;
+        let long = GaitRun::of(boot_board()?, gait, LONG_RUN_MS)?;
         let wall = start.elapsed().as_secs_f64();
 
         let frames = idle.cycles as f64 / FRAME as f64;
@@ -216,14 +219,14 @@ impl Figures {
 /// # Errors
 /// See [`Figures::measure`].
 pub fn longest_step(elf: &Path, robot: &Robot) -> Result<u64, BoardError> {
-    let gait = tour::gaits(robot)
+    let gait = tour::demonstration_gaits(robot)
         .first()
         .map_or("stand".into(), |gait| command(gait));
     let mut largest = 0;
     for function in STEPS {
         let mut board = SimulatedBoard::power_on(elf, Fidelity::DataSheet, robot)?;
         board.run_ms(1000)?;
-        largest = longest(board, function, &gait, &long_lines(robot))?.max(largest);
+        largest = longest_call(board, function, &gait, &long_lines(robot))?.max(largest);
     }
     Ok(largest)
 }
@@ -234,7 +237,7 @@ fn command(gait: &str) -> String {
 }
 
 /// A board after some time with one command on an idle line, and the cycles that it spent.
-struct Steady {
+struct GaitRun {
     board: SimulatedBoard,
     cycles: u64,
     awake: u64,
@@ -242,7 +245,7 @@ struct Steady {
     in_servos: u64,
 }
 
-impl Steady {
+impl GaitRun {
     fn of(mut board: SimulatedBoard, line: &str, ms: u64) -> Result<Self, BoardError> {
         board.say(line)?;
         board.run_ms(1000)?;
@@ -310,11 +313,17 @@ fn pose(robot: &Robot, turns: [f64; 4]) -> String {
 }
 
 /// Sends every command, with a report of every frame. Each is sent after the previous one was answered.
-fn session(mut board: SimulatedBoard, robot: &Robot) -> Result<SimulatedBoard, BoardError> {
+fn run_all_commands(
+    mut board: SimulatedBoard,
+    robot: &Robot,
+) -> Result<SimulatedBoard, BoardError> {
     board.say("watch 1")?;
     let mut lines = motions(robot);
     lines.extend(["help", "?", "status", "speed 55"].map(str::to_owned));
-    let gait = tour::gaits(robot).first().copied().map(command);
+    let gait = tour::demonstration_gaits(robot)
+        .first()
+        .copied()
+        .map(command);
     lines.extend(gait.clone());
     lines.push("rest".into());
     lines.extend(gait);
@@ -330,7 +339,7 @@ fn session(mut board: SimulatedBoard, robot: &Robot) -> Result<SimulatedBoard, B
 }
 
 /// Times a function under one command after another; returns the calls of each.
-fn times(
+fn time_calls_under(
     mut board: SimulatedBoard,
     function: &str,
     lines: &[impl AsRef<str>],
@@ -366,7 +375,7 @@ fn long_lines(robot: &Robot) -> Vec<String> {
 
 /// The most cycles of a function while each line is executed during a gait. A line may be refused, which takes as
 /// long.
-fn longest(
+fn longest_call(
     mut board: SimulatedBoard,
     function: &str,
     gait: &str,

@@ -24,13 +24,13 @@ const BYTE: u64 = 1360;
 /// and two in the transmitter.
 const CAPACITY: u64 = 255 + 2;
 /// Largest number of queued bytes that leaves room for the longest answer.
-const QUEUED: u64 = CAPACITY - LONGEST_LINE as u64;
+const MAX_QUEUED: u64 = CAPACITY - LONGEST_LINE as u64;
 /// Cycles that the AVR takes to compute a frame, approximately.
-const FRAME_TAKES: u64 = 8_000;
+const FRAME_CYCLES: u64 = 8_000;
 /// Cycles that the AVR takes to read the end of a line and to act on it, at most.
-const READING_TAKES: u64 = 3_000;
+const MAX_READING_CYCLES: u64 = 3_000;
 /// Largest number of frames from power-on until the robot wakes.
-const WAKES: usize = 500;
+const MAX_FRAMES_TO_WAKE: usize = 500;
 
 /// The firmware's main loop on a virtual board.
 struct CoreRun {
@@ -45,7 +45,7 @@ impl CoreRun {
         board.converter =
             Converter::new(supplies::reading(&supplies), supplies.rail_reference != 0);
         Self {
-            running: Running::on(robot.section(), board),
+            running: Running::with_flash(robot.section(), board),
         }
     }
 
@@ -62,15 +62,15 @@ impl CoreRun {
         _ = self.running.main.step(&mut self.running.board);
         let widths = self.running.board.submitted().0.map(|width| width.0);
         // The output of a frame is written right after it.
-        self.wake(cycle + FRAME_TAKES);
+        self.wake(cycle + FRAME_CYCLES);
         widths
     }
 
     /// The cycle at which waiting lines are written and waiting bytes are read; `None` if nothing waits.
-    fn retry(&self) -> Option<u64> {
+    fn next_wake(&self) -> Option<u64> {
         let board = &self.running.board;
         let waits = board.unread() > 0 || self.running.has_output();
-        waits.then(|| board.transmitter.free().saturating_sub(QUEUED * BYTE))
+        waits.then(|| board.transmitter.free().saturating_sub(MAX_QUEUED * BYTE))
     }
 }
 
@@ -108,7 +108,7 @@ pub fn play_with_contacts(
         // A tick is one slot before the first pulse of the frame that it begins.
         let tick = start.saturating_sub(silent as u64 * FRAME + SLOT);
         loop {
-            let retry = run.retry().filter(|retry| *retry < tick);
+            let retry = run.next_wake().filter(|retry| *retry < tick);
             let due = |byte: &&SerialByte| {
                 byte.cycle < tick && retry.is_none_or(|retry| byte.cycle < retry)
             };
@@ -147,11 +147,13 @@ pub fn undecided(received: &[SerialByte], first: u64) -> impl Iterator<Item = us
     let ends = received.iter().filter(|byte| byte.byte == b'\n');
     let left = ends.map(move |end| (tick + FRAME - end.cycle % FRAME) % FRAME);
     left.enumerate()
-        .filter_map(|(line, left)| (left < READING_TAKES).then_some(line))
+        .filter_map(|(line, left)| (left < MAX_READING_CYCLES).then_some(line))
 }
 
 /// Number of frames before A1's first pulse, if no command comes.
 fn frames_before_waking(robot: Robot<'static>) -> usize {
     let mut run = CoreRun::new(robot);
-    (0..WAKES).take_while(|_| run.tick(0)[0] == 0).count()
+    (0..MAX_FRAMES_TO_WAKE)
+        .take_while(|_| run.tick(0)[0] == 0)
+        .count()
 }

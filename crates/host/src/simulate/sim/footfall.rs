@@ -7,7 +7,7 @@ use super::frame::FRAME;
 
 /// Rate of a leg, deg/s, below which its foot counts as still. A motion with a cubic or smoothstep end passes this
 /// rate within a frame.
-const STILL: f64 = 4.0;
+const MAX_STILL_RATE: f64 = 4.0;
 
 /// The movement of a foot from one frame to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,7 +43,7 @@ pub fn foot_spans(
             continue;
         };
         let rate = (after[servo] - before[servo]) / frame;
-        let phase = if rate.abs() < STILL {
+        let phase = if rate.abs() < MAX_STILL_RATE {
             Phase::Still
         } else if rate > 0.0 {
             Phase::Swing

@@ -136,7 +136,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     #[cfg(target_os = "linux")]
     if let Some(link) = &args.pty {
         let mut uno = match &args.boot_loader {
-            Some(loader) => served::as_sold(loader, fidelity)?,
+            Some(loader) => served::new_board(loader, fidelity)?,
             None => {
                 let image = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?.image;
                 Uno::with_image(image, fidelity)
@@ -290,7 +290,7 @@ fn script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
         )));
     }
     Ok(args.gait.as_deref().map_or_else(
-        || Script::of_gaits(&tour::gaits(robot), ms),
+        || Script::of_gaits(&tour::demonstration_gaits(robot), ms),
         |gait| Script::of_gaits(&[gait], ms),
     ))
 }

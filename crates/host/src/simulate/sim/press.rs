@@ -8,7 +8,7 @@ use simulated_uno::{Pin, Uno};
 use crate::Failure;
 
 /// The length of a press whose end is not given, ms.
-const SHORT: u64 = 200;
+const DEFAULT_PRESS_MS: u64 = 200;
 
 /// A contact that is closed for some time, as in `button@2` or `nose@5.5-8`.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -46,7 +46,7 @@ impl FromStr for Press {
         let ms = |text| super::seconds(text).map(|seconds| (1_000.0 * seconds) as u64);
         let (from, to) = match times.split_once('-') {
             Some((from, to)) => (ms(from)?, ms(to)?),
-            None => (ms(times)?, ms(times)? + SHORT),
+            None => (ms(times)?, ms(times)? + DEFAULT_PRESS_MS),
         };
         if to <= from {
             return Err("it ends before it begins".to_owned());

@@ -19,7 +19,7 @@ use crate::shared::files::{self, note_input};
 ///
 /// # Errors
 /// Fails if the file is missing or is not an AVR program.
-pub(super) fn as_sold(boot_loader: &Path, fidelity: Fidelity) -> Result<Uno, Failure> {
+pub(super) fn new_board(boot_loader: &Path, fidelity: Fidelity) -> Result<Uno, Failure> {
     let image = Image::read(note_input(boot_loader))
         .map_err(|error| Failure::Input(format!("{}: {error}", boot_loader.display())))?;
     Ok(Uno::with_boot_loader(image, fidelity))
@@ -50,7 +50,7 @@ pub(super) fn until_interrupted(
         Some(link) => {
             // Before the link is made, so that a signal between the two does not leave it behind.
             remove_at_end(link.to_owned(), port.path().to_owned())?;
-            point(link, port.path())?;
+            make_link(link, port.path())?;
             link.to_owned()
         }
         None => port.path().to_owned(),
@@ -111,7 +111,7 @@ fn remove_at_end(link: PathBuf, port: PathBuf) -> Result<(), Failure> {
 }
 
 /// Makes `link` point at `port`. Replaces a link to another pseudo terminal, which a killed run has left.
-fn point(link: &Path, port: &Path) -> Result<(), Failure> {
+fn make_link(link: &Path, port: &Path) -> Result<(), Failure> {
     let cannot = |error: io::Error| files::write_failure(link, &error);
     let foreign = || {
         let name = link.display();

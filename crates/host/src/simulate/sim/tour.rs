@@ -10,7 +10,7 @@ pub fn moving(robot: &Robot) -> Vec<&str> {
 
 /// The gaits of a demonstration: the first that moves, and of the others the one that is predicted to turn the
 /// robot most in a cycle. Fewer if the robot has fewer moving gaits.
-pub fn gaits(robot: &Robot) -> Vec<&str> {
+pub fn demonstration_gaits(robot: &Robot) -> Vec<&str> {
     let moving = moving(robot);
     let turn = |name: &str| {
         let found = robot.gait(name);
@@ -32,7 +32,7 @@ mod tests {
     #[test]
     fn the_paper_robot_walks_and_turns_left() {
         let robot = crate::shared::robot_file::named("paper");
-        assert_eq!(gaits(&robot), ["walk", "left"]);
+        assert_eq!(demonstration_gaits(&robot), ["walk", "left"]);
         assert!(!moving(&robot).contains(&"stand"));
     }
 }

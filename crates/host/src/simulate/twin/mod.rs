@@ -144,14 +144,14 @@ fn script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
     Ok(match &args.gait {
         None => walk_script(robot, &tour::moving(robot)),
         Some(name) => match robot.routine(name) {
-            Some(routine) => a_round(robot, routine),
+            Some(routine) => round_script(robot, routine),
             None => walk_script(robot, &[moving_gait(robot, name)?.name()]),
         },
     })
 }
 
 /// A script for one round of a routine, after a second of standing and with a second after its end.
-fn a_round(robot: &Robot, routine: &Routine) -> Script {
+fn round_script(robot: &Robot, routine: &Routine) -> Script {
     const STAND_MS: u64 = 1000;
     let round = Round::of(robot, routine);
     let name = routine.name().replace('-', " ");

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use lizard_robot::{CheckedGait, Effort, Ground, PACES, Robot, TIGHT, Travel};
+use lizard_robot::{CheckedGait, Effort, Ground, HIGH_LINE_SHARE, PACES, Robot, Travel};
 use lizard_tune::{FRICTION, PLAY_SPREAD, SPREAD, Variation, quantiles};
 use lizard_twin::ServoModel;
 use serde::Serialize;
@@ -155,7 +155,7 @@ fn print(spreads: &[Spread], times: u32, out: &mut impl Write) -> io::Result<()>
     writeln!(
         out,
         "\nThe largest share of a servo's torque-speed line, on the robot's own floor and with the most friction.\n\
-         Above {TIGHT}, marked with !, little is left; above 1 a servo falls behind: `lizard gaits --servos`\n"
+         Above {HIGH_LINE_SHARE}, marked with !, little is left; above 1 a servo falls behind: `lizard gaits --servos`\n"
     )?;
     let Some(first) = spreads.first() else {
         return Ok(());
@@ -178,6 +178,6 @@ fn print(spreads: &[Spread], times: u32, out: &mut impl Write) -> io::Result<()>
 
 /// A share of the torque-speed line, with a mark if little is left.
 fn mark(share: f64) -> String {
-    let mark = if share >= TIGHT { '!' } else { ' ' };
+    let mark = if share >= HIGH_LINE_SHARE { '!' } else { ' ' };
     format!("{share:.2}{mark}")
 }

@@ -65,7 +65,7 @@ impl Writer<'_> {
 
     fn write_assets(&mut self) {
         const SIZE: &str = r#"width="256" height="256""#;
-        let shown = self.shown();
+        let shown = self.visible_pieces();
         let xml = &mut self.xml;
         xml.open("asset");
         xml.leaf(format!(

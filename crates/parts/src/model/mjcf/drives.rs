@@ -27,7 +27,10 @@ impl Writer<'_> {
         for (servo, name) in NAMES.iter().enumerate() {
             let motor = self.scene.motors.each[servo];
             let stall = motor.stall * MILLI;
-            let (gain, stall) = (round(stall / motor.full.to_radians()), round(stall));
+            let (gain, stall) = (
+                round(stall / motor.full_torque_error.to_radians()),
+                round(stall),
+            );
             let joint = match self.has_play() {
                 true => Node::Horn(servo),
                 false => Node::Of(Mount::Link(servo)),

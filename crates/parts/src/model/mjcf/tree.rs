@@ -4,7 +4,7 @@ use lizard_robot::SLOT;
 
 use super::document::limits;
 use crate::layers::body::Mount;
-use crate::model::looks::Look;
+use crate::model::looks::Material;
 use crate::model::node::{Freedom, Node};
 use crate::model::scene::Pull;
 use crate::model::text::{MILLI, joined, metres, round};
@@ -28,8 +28,12 @@ impl Writer<'_> {
         self.xml.leaf(format!(
             r#"inertial pos="{centre}" mass="{grams}" fullinertia="{tensor}""#
         ));
-        for piece in self.shown().iter().filter(|piece| piece.node == node) {
-            let (name, colour) = (&piece.name, Look::of(piece.kind).colour);
+        for piece in self
+            .visible_pieces()
+            .iter()
+            .filter(|piece| piece.node == node)
+        {
+            let (name, colour) = (&piece.name, Material::of(piece.kind).colour);
             self.xml
                 .leaf(format!(r#"geom type="mesh" mesh="{name}" rgba="{colour}""#));
         }
@@ -60,8 +64,8 @@ impl Writer<'_> {
                 return;
             }
             Freedom::Turns => ("hinge", "0 0 1"),
-            Freedom::Along => ("slide", "1 0 0"),
-            Freedom::Upright => ("slide", "0 0 1"),
+            Freedom::SlidesAlongX => ("slide", "1 0 0"),
+            Freedom::SlidesVertically => ("slide", "0 0 1"),
         };
         let mut joint = format!(r#"joint name="{name}" type="{kind}" axis="{axis}""#);
         let joints = self.scene.motors.joints;
@@ -76,7 +80,7 @@ impl Writer<'_> {
         } else if matches!(node.freedom(), Freedom::Turns) {
             joint += &friction_loss(self.scene.pins * MILLI);
         }
-        if matches!(node.freedom(), Freedom::Along) && !matches!(node, Node::Slot(_)) {
+        if matches!(node.freedom(), Freedom::SlidesAlongX) && !matches!(node, Node::Slot(_)) {
             joint += &friction_loss(joints.slider);
         }
         match (node, self.scene.pull) {

@@ -1,6 +1,6 @@
 //! Tests with gaits at their limits and just beyond.
 
-use crate::testing::{all, body, robot, with};
+use crate::testing::{all, robot, text_before_gaits, with};
 use crate::{CheckedGait, Robot};
 use lizard_core::guard::hazard::{Hazard, Margin};
 use lizard_core::numbers::part::{End, Servo, Side as CoreSide};
@@ -31,7 +31,7 @@ fn lean(right: bool, limits: &[(&str, String)]) -> Result<Robot, crate::Error> {
     } else {
         "RF = 0.0, RH = 0.0"
     };
-    let mut text = body("unequal")
+    let mut text = text_before_gaits("unequal")
         .replacen("l13 = 51.0", "l13 = 57.0", 1)
         .replacen("l18 = 57.0", "l18 = 51.4", 1);
     for (from, to) in limits {
@@ -158,7 +158,8 @@ fn a_gait_may_use_all_of_a_servos_travel() {
     // A held leg swings exactly its amplitude to either side of neutral.
     let travel = |degrees: f64| {
         let servo = format!("us_per_degree = 8.5\nmin_us = {:?}", 1500.0 - degrees * 8.5);
-        let body = body("unequal").replacen("us_per_degree = 8.5\nmin_us = 700.0", &servo, 1);
+        let body =
+            text_before_gaits("unequal").replacen("us_per_degree = 8.5\nmin_us = 700.0", &servo, 1);
         Robot::parse(&format!(
             "{body}{STAND}[gait.sway]\nperiod = 2.0\nwaveform = \"held\"\namplitude = 17.0\norder = [\"LH\", \"LF\", \"RH\", \"RF\"]\n"
         ))

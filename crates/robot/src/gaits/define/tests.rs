@@ -1,11 +1,11 @@
 //! Tests of valid and invalid gait definitions in robot.toml.
 
-use crate::testing::{body, robot};
+use crate::testing::{robot, text_before_gaits};
 use crate::{Error, Robot};
 use lizard_core::console::word::Word;
 
 fn paper_with_gaits(gaits: &str) -> Result<Robot, Error> {
-    Robot::parse(&format!("{}{gaits}", body("paper")))
+    Robot::parse(&format!("{}{gaits}", text_before_gaits("paper")))
 }
 
 const STAND: &str = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";

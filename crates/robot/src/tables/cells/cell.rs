@@ -10,7 +10,7 @@ use lizard_kinematics::Vector;
 const DIVISIONS: u32 = 4;
 
 /// Allowance for floating-point errors, as a sine and in mm; far more than they are.
-pub(super) const HAIR: f64 = 1e-9;
+pub(super) const ROUNDING_ALLOWANCE: f64 = 1e-9;
 
 /// A range of one servo's angles in the chassis frame, in 1/65536 turn.
 #[derive(Clone, Copy, Debug)]

@@ -21,7 +21,7 @@ use lizard_core::numbers::section::Content;
 use lizard_core::numbers::units::Sine;
 use lizard_kinematics::{AssemblyMode, End, FiveBar, Lizard, Vector};
 
-use super::cell::{Cell, Condition, HAIR, Span, Verdict};
+use super::cell::{Cell, Condition, ROUNDING_ALLOWANCE, Span, Verdict};
 use crate::units::ONE_Q15;
 
 /// The conditions of head or tail.
@@ -96,7 +96,7 @@ impl Condition for EndConditions {
         let apart = pose.gap.length();
         let range = [(apart - crank_movement).max(0.0), apart + crank_movement];
         let errors = bounds::End::between(&self.bars, self.integers, range);
-        let uncrossed = pose.gap.x - crank_movement > errors.along + HAIR;
+        let uncrossed = pose.gap.x - crank_movement > errors.along + ROUNDING_ALLOWANCE;
         if !(errors.is_known && uncrossed) {
             return Verdict::Open;
         }
@@ -105,14 +105,14 @@ impl Condition for EndConditions {
             left.half() + coupler_turn(self.bars.coupler_left) + errors.type1_left,
             right.half() + coupler_turn(self.bars.coupler_right) + errors.type1_right,
         ];
-        let is_kept = errors.least - errors.type2 >= self.type2 + HAIR
+        let is_kept = errors.least - errors.type2 >= self.type2 + ROUNDING_ALLOWANCE
             && type1
                 .iter()
                 .zip(elbows)
-                .all(|(margin, less)| margin - less >= self.type1 + HAIR)
+                .all(|(margin, less)| margin - less >= self.type1 + ROUNDING_ALLOWANCE)
             && [left, right]
                 .iter()
-                .all(|span| self.least_leg(span) - DIRECTION >= self.leg + HAIR);
+                .all(|span| self.least_leg(span) - DIRECTION >= self.leg + ROUNDING_ALLOWANCE);
         if is_kept {
             Verdict::Kept
         } else {

@@ -9,7 +9,7 @@ use lizard_core::guard::bounds;
 use lizard_core::numbers::section::Content;
 use lizard_kinematics::{Lizard, Side, Slider};
 
-use super::cell::{Cell, Condition, HAIR, Verdict};
+use super::cell::{Cell, Condition, ROUNDING_ALLOWANCE, Verdict};
 use crate::measures::scale;
 
 /// The condition that a side's slider stays within its stroke.
@@ -58,7 +58,7 @@ impl Condition for StrokeCondition {
             return Verdict::Broken;
         }
         let arm_movement = self.slider.front * front.half() + self.slider.rear * rear.half();
-        if room - arm_movement - self.error >= HAIR {
+        if room - arm_movement - self.error >= ROUNDING_ALLOWANCE {
             Verdict::Kept
         } else {
             Verdict::Open

@@ -288,7 +288,7 @@ fn a_travel_that_was_saved_short_of_a_gait_is_not_used_whichever_servo_it_is() {
         let mut adjustment = settings.servo(servo);
         adjustment.max = Sweep(robot.reach(servo).max.0 - 1);
         settings.set_servo(servo, adjustment);
-        assert_eq!(settings.unfit(&robot), Some(servo));
+        assert_eq!(settings.first_unfit_servo(&robot), Some(servo));
     }
 }
 

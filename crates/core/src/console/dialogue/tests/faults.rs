@@ -154,7 +154,7 @@ fn held(sweeps: [i16; 4]) -> Stance {
     let pose = Pose(sweeps.map(crate::numbers::units::Sweep));
     Stance {
         is_resting: false,
-        awake: crate::motion::AWAKE,
+        frames_awake: crate::motion::AWAKE_FRAMES,
         pose,
         sent: pose.pulses(&Sample::odd().calibration()),
     }

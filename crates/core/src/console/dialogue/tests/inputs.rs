@@ -56,7 +56,7 @@ fn gait(dialogue: &Dialogue) -> String {
 }
 
 /// Frames until the robot's activity changes, at most [`LONG_FRAMES`], and the new activity.
-fn change(dialogue: &mut Dialogue) -> (u32, String) {
+fn run_until_change(dialogue: &mut Dialogue) -> (u32, String) {
     let before = gait(dialogue);
     for frames in 0..LONG_FRAMES {
         if gait(dialogue) != before {
@@ -85,7 +85,7 @@ fn a_robot_waits_for_its_button_walks_to_the_wall_and_turns_every_round() {
         assert_eq!(gait(&dialogue), "sway");
         assert!(press(&mut dialogue, NOSE, DEBOUNCED).is_empty());
         assert_eq!(gait(&dialogue), "back");
-        assert_eq!(change(&mut dialogue).1, "sway left");
+        assert_eq!(run_until_change(&mut dialogue).1, "sway left");
     }
     assert_eq!(dialogue.run(LONG_FRAMES), ["# done"]);
     assert_eq!(dialogue.status("gait"), "stop");
@@ -101,7 +101,7 @@ fn a_bouncing_contact_counts_once_it_has_held_for_three_frames() {
     }
     assert_eq!(gait(&dialogue), "Stop");
     set(&mut dialogue, BUTTON, true);
-    let frames = change(&mut dialogue);
+    let frames = run_until_change(&mut dialogue);
     assert_eq!(frames, (DEBOUNCED, "sway".to_string()));
 }
 
@@ -127,7 +127,10 @@ fn a_wall_that_is_there_already_ends_the_way_at_once() {
     dialogue.run(LONG_FRAMES);
     set(&mut dialogue, NOSE, true);
     press(&mut dialogue, BUTTON, DEBOUNCED);
-    assert_eq!(change(&mut dialogue), (DEBOUNCED, "back".to_string()));
+    assert_eq!(
+        run_until_change(&mut dialogue),
+        (DEBOUNCED, "back".to_string())
+    );
 }
 
 #[test]
@@ -151,11 +154,11 @@ fn a_contact_ends_a_step_of_every_kind_and_without_it_count_or_time_do() {
         ended.run(10);
         set(&mut ended, NOSE, true);
         assert_eq!(
-            change(&mut ended),
+            run_until_change(&mut ended),
             (DEBOUNCED, "stand".to_string()),
             "{step:?}"
         );
-        let (frames, next) = change(&mut at_step());
+        let (frames, next) = run_until_change(&mut at_step());
         assert_eq!(next, "stand");
         assert!(alone.contains(&frames), "{step:?}: {frames}");
     }
@@ -296,7 +299,10 @@ fn a_low_supply_slows_the_way_and_the_contact_ends_it_as_always() {
     dialogue.run(60);
     assert_eq!(gait(&dialogue), "sway");
     set(&mut dialogue, NOSE, true);
-    assert_eq!(change(&mut dialogue), (DEBOUNCED, "back".to_string()));
+    assert_eq!(
+        run_until_change(&mut dialogue),
+        (DEBOUNCED, "back".to_string())
+    );
 }
 
 #[test]
@@ -385,10 +391,10 @@ fn a_routine_may_wait_once_and_repeat_the_steps_after_that() {
     for _ in 0..3 {
         assert_eq!(gait(&dialogue), "sway");
         set(&mut dialogue, NOSE, true);
-        assert_eq!(change(&mut dialogue).1, "back");
+        assert_eq!(run_until_change(&mut dialogue).1, "back");
         set(&mut dialogue, NOSE, false);
-        assert_eq!(change(&mut dialogue).1, "sway left");
-        change(&mut dialogue);
+        assert_eq!(run_until_change(&mut dialogue).1, "sway left");
+        run_until_change(&mut dialogue);
     }
     assert_eq!(dialogue.status("gait"), "stop");
 }

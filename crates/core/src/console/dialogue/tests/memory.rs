@@ -138,7 +138,7 @@ fn a_save_right_after_the_start_waits_at_most_half_a_second_for_the_supply() {
         "{printed:?}"
     );
     assert_eq!(dialogue.run(15), ["ok save"]);
-    let mut never = Dialogue::on(Sample::odd().section(), VirtualBoard::default());
+    let mut never = Dialogue::with_flash(Sample::odd().section(), VirtualBoard::default());
     never.lines();
     never.board.send(b"save\r");
     assert_eq!(never.run(30), ["err 8 the supply is too low"]);

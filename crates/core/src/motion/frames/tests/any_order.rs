@@ -43,7 +43,7 @@ proptest! {
                 Ask::Gait(name) => motion.start(name),
                 Ask::Pose(sweeps) => {
                     let pose = Pose(sweeps.map(Sweep));
-                    let beyond = pose.beyond(motion.calibration()).map(Hazard::Travel);
+                    let beyond = pose.first_beyond_travel(motion.calibration()).map(Hazard::Travel);
                     let hazard = Clearance::of(&motion.robot, &pose).hazard(&motion.robot);
                     let hazard = beyond.or(hazard);
                     prop_assert_eq!(motion.go_to(&pose).err(), hazard);
@@ -61,7 +61,7 @@ proptest! {
                     prop_assert!(actual == Width(0) || actual == held);
                 }
                 if !cycling {
-                    let distance = before.farthest(motion.pose());
+                    let distance = before.largest_turn_to(motion.pose());
                     prop_assert!(distance <= motion.robot.slew().per_frame, "{}", distance);
                 }
             }

@@ -71,7 +71,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
 /// the terminal cancels it.
 fn with_keys<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, TurnError> {
     match steps(guide) {
-        Err(TurnError::Io(_)) if !terminal::is_there() => {
+        Err(TurnError::Io(_)) if !terminal::is_open() => {
             guide.press_key(Key::Leave)?;
             Ok(false)
         }
@@ -89,7 +89,7 @@ fn steps<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, Turn
             page.show(&view)?;
             last_view = Some(view);
         }
-        if !terminal::is_there() {
+        if !terminal::is_open() {
             return Err(io::Error::from(io::ErrorKind::UnexpectedEof).into());
         }
         // Polls without waiting: if the terminal is closed during a wait, crossterm never returns

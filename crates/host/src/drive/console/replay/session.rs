@@ -12,10 +12,10 @@ use crate::simulate::sim::spans::{self, Span};
 /// Length of a frame, ms.
 const FRAME_MS: u64 = 20;
 /// Longest gap between reported poses, in frames, over which the earlier one is held.
-const HELD: usize = 50;
+const MAX_HELD_FRAMES: usize = 50;
 /// Largest difference, in frames, between the robot's frame count and this machine's clock. A line may arrive late,
 /// and a simulated robot lags behind on a slow machine.
-const APART: usize = 10;
+const MAX_CLOCK_DIFFERENCE: usize = 10;
 /// Longest valid session, ms: a day.
 const LONGEST_MS: u64 = 86_400_000;
 
@@ -100,7 +100,7 @@ impl Session {
         let mut widths: Vec<[u16; 4]> = vec![[0; 4]; (self.end_ms() / FRAME_MS) as usize + 1];
         let mut resting = false;
         // The robot's frame count and our index at the last pose at which the two were matched.
-        let mut begin: Option<(u64, usize)> = None;
+        let mut matched: Option<(u64, usize)> = None;
         let mut count = 0;
         // Our index of the last pose; `None` if the robot has rested or was reset since.
         let mut last: Option<usize> = None;
@@ -116,18 +116,18 @@ impl Session {
                 Event::Pose { frame, angles } => {
                     let slot_now = (entry.ms / FRAME_MS) as usize;
                     if *frame < count {
-                        (begin, last) = (None, None);
+                        (matched, last) = (None, None);
                     }
                     count = *frame;
                     // The robot's count is steadier than the time at which a line arrives.
-                    let counted = begin.and_then(|(first, at)| {
+                    let counted = matched.and_then(|(first, at)| {
                         at.checked_add(usize::try_from(frame.checked_sub(first)?).ok()?)
                     });
                     let slot_index = counted
-                        .filter(|slot_index| slot_index.abs_diff(slot_now) <= APART)
+                        .filter(|slot_index| slot_index.abs_diff(slot_now) <= MAX_CLOCK_DIFFERENCE)
                         .unwrap_or(slot_now);
                     if counted != Some(slot_index) {
-                        begin = Some((*frame, slot_index));
+                        matched = Some((*frame, slot_index));
                     }
                     let Some(slot) = widths.get_mut(slot_index) else {
                         continue;
@@ -141,9 +141,9 @@ impl Session {
                         (us * CYCLES_PER_US as f64).round().clamp(1.0, 65_534.0) as u16
                     });
                     *slot = pulses;
-                    if let Some(previous_slot) = last
-                        .filter(|previous_slot| slot_index.saturating_sub(*previous_slot) <= HELD)
-                    {
+                    if let Some(previous_slot) = last.filter(|previous_slot| {
+                        slot_index.saturating_sub(*previous_slot) <= MAX_HELD_FRAMES
+                    }) {
                         let held_widths = widths[previous_slot];
                         for slot in widths.iter_mut().take(slot_index).skip(previous_slot + 1) {
                             *slot = held_widths;

@@ -50,7 +50,7 @@ pub enum Event<'a> {
     /// The number of finished pages of a step, and of all its pages.
     Progress(Step, usize, usize),
     /// The board is reset for another attempt.
-    Again {
+    Retry {
         /// The reason for another attempt.
         trouble: &'a LoaderError,
         /// The boot loader that was called.
@@ -78,7 +78,7 @@ pub enum UploadError {
          wired to D0 or D1? Where USB does not reset the board, press its button just after the \
          start of this command"
     )]
-    Nobody,
+    NoLoader,
     /// The chip is not that of a UNO.
     #[error("the chip is {0}; the firmware is for {uno}. Nothing was written", uno = Chip::ATMEGA328P)]
     Chip(Chip),
@@ -178,7 +178,7 @@ pub fn upload<B: Board>(
         report,
         has_answered: false,
         has_reported: false,
-        left: FlashState::Unchanged,
+        flash_state: FlashState::Unchanged,
     };
     let mut written = vec![false; BOOT / PAGE];
     let mut loaders = target.loaders().iter().copied().cycle();
@@ -189,17 +189,17 @@ pub fn upload<B: Board>(
         }
         let trouble = match upload.attempt(kind, &mut written) {
             Ok(()) => break,
-            Err(Stop::Error(error)) => return Err(error),
-            Err(Stop::Loader(trouble)) => trouble,
+            Err(AttemptError::Error(error)) => return Err(error),
+            Err(AttemptError::Loader(trouble)) => trouble,
         };
-        if attempt == ATTEMPTS || !trouble.may_pass() {
+        if attempt == ATTEMPTS || !trouble.is_transient() {
             return Err(upload.failure(trouble));
         }
         let next = match upload.has_answered {
             true => kind,
             false => loaders.clone().next().unwrap_or(kind),
         };
-        (upload.report)(Event::Again {
+        (upload.report)(Event::Retry {
             trouble: &trouble,
             called: kind,
             next,
@@ -214,12 +214,12 @@ pub fn upload<B: Board>(
 }
 
 /// The reason why one attempt ended.
-enum Stop {
+enum AttemptError {
     Loader(LoaderError),
     Error(UploadError),
 }
 
-impl From<LoaderError> for Stop {
+impl From<LoaderError> for AttemptError {
     fn from(trouble: LoaderError) -> Self {
         Self::Loader(trouble)
     }
@@ -234,21 +234,21 @@ struct Upload<'a, B> {
     has_answered: bool,
     /// True if the board's contents were reported.
     has_reported: bool,
-    left: FlashState,
+    flash_state: FlashState,
 }
 
 impl<B: Board> Upload<'_, B> {
     /// Makes one attempt, from the reset to the start of the program. Marks the pages that it
     /// writes.
-    fn attempt(&mut self, kind: Kind, written: &mut [bool]) -> Result<(), Stop> {
+    fn attempt(&mut self, kind: Kind, written: &mut [bool]) -> Result<(), AttemptError> {
         self.loader.call(kind)?;
         self.has_answered = true;
         let chip = Chip(self.loader.signature()?);
         if chip != Chip::ATMEGA328P {
-            return Err(Stop::Error(UploadError::Chip(chip)));
+            return Err(AttemptError::Error(UploadError::Chip(chip)));
         }
-        let room = self.target.has_room(self.image, kind);
-        room.map_err(|error| Stop::Error(error.into()))?;
+        let room = self.target.check_room(self.image, kind);
+        room.map_err(|error| AttemptError::Error(error.into()))?;
         let flash = self.read_flash(kind.start())?;
         let mut goal = self.image.pages();
         goal.retain(|page| flash[page.range()] != page.bytes);
@@ -273,18 +273,18 @@ impl<B: Board> Upload<'_, B> {
     }
 
     /// Writes pages. Blanks or idles the image's first page before the others, and writes it last.
-    fn write_pages(&mut self, mut goal: Vec<Page>, flash: &[u8]) -> Result<(), Stop> {
+    fn write_pages(&mut self, mut goal: Vec<Page>, flash: &[u8]) -> Result<(), AttemptError> {
         let first = self.first_page();
-        let mut closed = [BLANK; PAGE];
+        let mut placeholder = [BLANK; PAGE];
         if self.image.is_robot_alone() {
-            self.left = FlashState::HalfRobot;
+            self.flash_state = FlashState::HalfRobot;
         } else {
-            self.left = FlashState::HalfProgram;
-            closed[..IDLE.len()].copy_from_slice(&IDLE);
+            self.flash_state = FlashState::HalfProgram;
+            placeholder[..IDLE.len()].copy_from_slice(&IDLE);
         }
         goal.retain(|page| page.address != first.address);
-        if !goal.is_empty() && flash[first.range()] != closed {
-            self.write_page(first.address, &closed)?;
+        if !goal.is_empty() && flash[first.range()] != placeholder {
+            self.write_page(first.address, &placeholder)?;
         }
         self.write(&goal)?;
         self.write(&[first])
@@ -292,7 +292,7 @@ impl<B: Board> Upload<'_, B> {
 
     /// Reads flash up to the boot loader and reports its contents. For a robot alone, reads only the first page of
     /// the code.
-    fn read_flash(&mut self, boot: usize) -> Result<Vec<u8>, Stop> {
+    fn read_flash(&mut self, boot: usize) -> Result<Vec<u8>, AttemptError> {
         let mut flash = vec![BLANK; BOOT];
         if self.image.is_robot_alone() {
             self.read(&mut flash, 0..1)?;
@@ -314,9 +314,9 @@ impl<B: Board> Upload<'_, B> {
     }
 
     /// Checks that the code in flash can read the robot that is to be written after it.
-    fn check_code(&self, contents: &FlashContents) -> Result<(), Stop> {
+    fn check_code(&self, contents: &FlashContents) -> Result<(), AttemptError> {
         let contents = contents.clone();
-        Err(Stop::Error(match contents.program {
+        Err(AttemptError::Error(match contents.program {
             Program::Lizard { mark, .. } if mark.format == FORMAT => return Ok(()),
             Program::Lizard { mark, .. } => UploadError::Format {
                 found: contents,
@@ -326,7 +326,7 @@ impl<B: Board> Upload<'_, B> {
         }))
     }
 
-    fn read(&mut self, flash: &mut [u8], pages: Range<usize>) -> Result<(), Stop> {
+    fn read(&mut self, flash: &mut [u8], pages: Range<usize>) -> Result<(), AttemptError> {
         let page_count = pages.len();
         for (done, page) in pages.enumerate() {
             let address = page * PAGE;
@@ -338,7 +338,7 @@ impl<B: Board> Upload<'_, B> {
     }
 
     /// Writes pages and reads them back. A page that does not read back as written is written once more.
-    fn write(&mut self, pages: &[Page]) -> Result<(), Stop> {
+    fn write(&mut self, pages: &[Page]) -> Result<(), AttemptError> {
         for (done, page) in pages.iter().enumerate() {
             self.write_page(page.address, &page.bytes)?;
             (self.report)(Event::Progress(Step::Writing, done + 1, pages.len()));
@@ -350,11 +350,11 @@ impl<B: Board> Upload<'_, B> {
                 read_back = self.loader.read_page(page.address)?;
             }
             if let Some(offset) = difference(&read_back, &page.bytes) {
-                return Err(Stop::Error(UploadError::NotKept {
+                return Err(AttemptError::Error(UploadError::NotKept {
                     address: page.address + offset,
                     written: page.bytes[offset],
                     read: read_back[offset],
-                    left: self.left,
+                    left: self.flash_state,
                 }));
             }
             (self.report)(Event::Progress(Step::Verifying, done + 1, pages.len()));
@@ -362,17 +362,17 @@ impl<B: Board> Upload<'_, B> {
         Ok(())
     }
 
-    fn write_page(&mut self, address: usize, bytes: &[u8; PAGE]) -> Result<(), Stop> {
+    fn write_page(&mut self, address: usize, bytes: &[u8; PAGE]) -> Result<(), AttemptError> {
         assert!(address < BOOT, "an image ends before the boot loader");
         Ok(self.loader.write_page(address, bytes)?)
     }
 
     fn failure(&self, trouble: LoaderError) -> UploadError {
         match trouble {
-            LoaderError::Silent if !self.has_answered => UploadError::Nobody,
+            LoaderError::Silent if !self.has_answered => UploadError::NoLoader,
             trouble => UploadError::Broken {
                 trouble,
-                left: self.left,
+                left: self.flash_state,
             },
         }
     }

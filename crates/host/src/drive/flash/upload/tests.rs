@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use lizard_core::numbers::mark::AT;
+use lizard_core::numbers::mark::ADDRESS;
 
 use super::super::double::Double;
 use super::super::stk500::Timeouts;
@@ -51,7 +51,7 @@ fn run_with(board: Double, image: &Image) -> Run {
 /// Uploads to a board; `target` is known about it beforehand.
 fn run_as(board: Double, image: &Image, target: Target) -> Run {
     let timeouts = Timeouts {
-        blinks: Duration::ZERO,
+        blink_time: Duration::ZERO,
         call: Duration::from_millis(2),
         quiet: Duration::ZERO,
         answer: Duration::from_millis(5),
@@ -60,7 +60,7 @@ fn run_as(board: Double, image: &Image, target: Target) -> Run {
     let (mut found, mut again) = (Vec::new(), 0);
     let result = upload(&mut loader, image, target, &mut |event| match event {
         Event::Found(what) => found.push(what.to_string()),
-        Event::Again { .. } => again += 1,
+        Event::Retry { .. } => again += 1,
         Event::Progress(_, done, of) => assert!((1..=of).contains(&done), "{done} of {of}"),
     });
     let board = loader.into_board();
@@ -79,7 +79,7 @@ impl Run {
         let (flash, blank) = (&self.board.flash, Double::blank().flash);
         assert_eq!(flash[..600], bytes(600, 3));
         assert_eq!(flash[0x7e00..], blank[0x7e00..], "the boot loader");
-        assert!(self.board.was_left, "the program is started");
+        assert!(self.board.has_started_program, "the program is started");
         done
     }
 
@@ -105,7 +105,7 @@ fn robot_image(name: &str) -> Image {
 
 /// The name of the robot that the firmware would load.
 fn robot_name(board: &Double) -> Option<String> {
-    robot_in(&board.flash[..BOOT]).map(|robot| robot.label().map(char::from).collect())
+    robot_in(&board.flash[..BOOT]).map(|robot| robot.robot_name().map(char::from).collect())
 }
 
 /// The firmware's image with the robot of the robot file of this name.
@@ -172,7 +172,7 @@ fn a_board_that_never_answers_is_called_after_four_resets_and_not_written() {
     let mut board = Double::with(&[9; 500]);
     board.is_mute = true;
     let run = run(board);
-    assert!(matches!(run.result, Err(UploadError::Nobody)));
+    assert!(matches!(run.result, Err(UploadError::NoLoader)));
     assert!(
         run.error()
             .starts_with("no boot loader answers. Is it a UNO or a Nano?")
@@ -205,14 +205,14 @@ fn a_board_that_never_stops_sending_is_not_a_boot_loader() {
     }
     let result = lizard_time_limit::LIMIT.within("the end of the calls", || {
         let timeouts = Timeouts {
-            blinks: Duration::from_millis(2),
+            blink_time: Duration::from_millis(2),
             call: Duration::from_millis(2),
             ..Timeouts::default()
         };
         let mut loader = Loader::new(Talker, timeouts);
         upload(&mut loader, &image(), Target::default(), &mut |_| {})
     });
-    assert!(matches!(result, Err(UploadError::Nobody)));
+    assert!(matches!(result, Err(UploadError::NoLoader)));
 }
 
 #[test]
@@ -240,7 +240,7 @@ fn any_one_byte_lost_on_the_way_to_the_board_is_recovered() {
     // Reading a page sends 9 bytes: steps of 7 lose each of the 9 at some page.
     for at in (0..whole.received).step_by(7) {
         let mut board = Double::with(&old);
-        board.lost_to = Some(at);
+        board.lost_byte_to_board = Some(at);
         let run = run(board);
         assert!(run.result.is_ok(), "byte {at}: {}", run.error());
         let flash = &run.board.flash;
@@ -257,7 +257,7 @@ fn any_one_byte_lost_on_the_way_from_the_board_is_recovered() {
     // Each byte of the call and of the first pages, then every 101st byte.
     for at in (0..300).chain((300..whole.sent).step_by(101)) {
         let mut board = Double::with(&old);
-        board.lost_from = Some(at);
+        board.lost_byte_from_board = Some(at);
         let run = run(board);
         assert!(run.result.is_ok(), "byte {at}: {}", run.error());
         run.assert_written();
@@ -268,7 +268,7 @@ fn any_one_byte_lost_on_the_way_from_the_board_is_recovered() {
 fn a_byte_that_the_flash_does_not_keep_is_named_and_the_board_does_nothing() {
     let mut board = Double::with(&[9; 500]);
     let right = image().bytes()[0x85];
-    board.worn = Some((0x85, right & right.wrapping_neg()));
+    board.stuck_bits = Some((0x85, right & right.wrapping_neg()));
     let run = run(board);
     let words = run.error();
     assert!(words.contains("the byte at address 0x0085"), "{words}");

@@ -35,7 +35,7 @@ const LEVELS: [f64; 2] = [530.0, 694.0];
 /// Heights of the horizontal parts of the ground wires of signals and board, below all other wires.
 const GROUND_LEVELS: [f64; 2] = [582.0, 748.0];
 /// Position at which the wire from the ground strip to the signal strip goes down.
-const DOWN: f64 = 622.0;
+const GROUND_WIRE_X: f64 = 622.0;
 const UNO: Uno = Uno {
     corner: (120.0, 776.0),
 };
@@ -129,7 +129,13 @@ fn servo_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
     let last = strips::ground(strips::GROUNDS - 1);
     let to = strips::signal_ground();
     let level = GROUND_LEVELS[0];
-    let path = vec![last, (DOWN, last.1), (DOWN, level), (to.0, level), to];
+    let path = vec![
+        last,
+        (GROUND_WIRE_X, last.1),
+        (GROUND_WIRE_X, level),
+        (to.0, level),
+        to,
+    ];
     wires.push(Wire::new("signals-ground", path, BLACK, THICK));
     wires.extend(board_wires(order, pins));
     wires

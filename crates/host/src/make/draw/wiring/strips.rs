@@ -42,7 +42,7 @@ pub fn supply(way: usize) -> (f64, f64) {
 
 /// Index of the way of the signal strip for the servo at this place from left to right. The middle way is for
 /// ground.
-const fn way(index: usize) -> usize {
+const fn way_of_servo(index: usize) -> usize {
     if index < 2 { index } else { index + 1 }
 }
 
@@ -55,7 +55,7 @@ fn signal_x(way: usize) -> f64 {
 
 /// The hole of the signal strip for a servo's signal.
 pub fn servo(index: usize) -> (f64, f64) {
-    (signal_x(way(index)), SIGNALS_AT.0)
+    (signal_x(way_of_servo(index)), SIGNALS_AT.0)
 }
 
 /// The hole of the signal strip for the wire from the ground strip.
@@ -66,7 +66,7 @@ pub fn signal_ground() -> (f64, f64) {
 /// The hole of the signal strip for a jumper to the board.
 pub fn board(index: usize) -> (f64, f64) {
     let outward = if index < 2 { -JUMPER } else { JUMPER };
-    (signal_x(way(index)) + outward, SIGNALS_AT.1)
+    (signal_x(way_of_servo(index)) + outward, SIGNALS_AT.1)
 }
 
 /// The hole of the signal strip for the board's ground.
@@ -102,7 +102,7 @@ pub fn resistors(names: [&str; 4]) -> Vec<Wire> {
             _ => (5.0, false),
         };
         let inward = if index < 2 { JUMPER } else { -JUMPER };
-        let from = (signal_x(way(index)) + inward, SIGNALS_AT.1);
+        let from = (signal_x(way_of_servo(index)) + inward, SIGNALS_AT.1);
         let to = (signal_x(MIDDLE) + to_middle, SIGNALS_AT.1);
         let low = SIGNALS_AT.1 + if inner { 17.0 } else { 35.0 };
         let path = vec![from, (from.0, low), (to.0, low), to];

@@ -47,7 +47,7 @@ pub struct StackDepth {
     /// The depth of the deepest interrupt, with its return address; 0 without interrupts.
     pub handler: u16,
     /// The depth of the deepest interrupt that enables others and never returns; 0 without one.
-    pub last: u16,
+    pub final_handler: u16,
     /// First address of SRAM that the stack may use.
     floor: u16,
 }
@@ -84,7 +84,7 @@ impl StackDepth {
         Ok(Self {
             main,
             handler,
-            last,
+            final_handler: last,
             floor,
         })
     }
@@ -92,7 +92,7 @@ impl StackDepth {
     /// The deepest stack of all: main at its deepest, on top of it the interrupt that never returns, if there is
     /// one, and another interrupt.
     pub fn worst(&self) -> u16 {
-        self.main + self.last + self.handler
+        self.main + self.final_handler + self.handler
     }
 
     /// Bytes between static data and the deepest stack; negative if they collide.

@@ -14,7 +14,7 @@ fn a_robot_alone_is_written_with_its_first_page_blank_first_and_filled_last() {
     assert_eq!(run.board.written, order);
     let whole = whole_image("unequal");
     assert!(run.board.flash[..whole.end()] == *whole.bytes());
-    assert!(run.board.was_left, "the firmware is started");
+    assert!(run.board.has_started_program, "the firmware is started");
     let [found] = &run.found[..] else {
         panic!("{:?}", run.found)
     };
@@ -41,7 +41,7 @@ fn a_gait_that_changes_costs_less_than_a_second_of_the_line() {
 fn a_robot_that_the_board_has_is_not_written() {
     let run = run_with(with_robot("paper"), &robot_image("paper"));
     assert_eq!(run.result.expect("it is right").written, 0);
-    assert!(run.board.written.is_empty() && run.board.was_left);
+    assert!(run.board.written.is_empty() && run.board.has_started_program);
     assert!(run.found[0].ends_with(" already"), "{:?}", run.found);
 }
 
@@ -85,12 +85,12 @@ fn any_one_byte_lost_while_a_robot_is_written_is_recovered() {
     };
     for at in (0..whole.received).step_by(17) {
         let mut board = Double::with(&before);
-        board.lost_to = Some(at);
+        board.lost_byte_to_board = Some(at);
         assert_recovered(&run_with(board, &paper), at);
     }
     for at in (0..whole.sent).step_by(101) {
         let mut board = Double::with(&before);
-        board.lost_from = Some(at);
+        board.lost_byte_from_board = Some(at);
         assert_recovered(&run_with(board, &paper), at);
     }
 }
@@ -124,7 +124,7 @@ fn a_robot_alone_is_refused_if_the_code_on_the_board_cannot_read_it() {
         }),
         format!("the board has half a program, which does nothing, and {reason}")
     );
-    let words = refused(&|board| board.flash[AT + 4] += 1);
+    let words = refused(&|board| board.flash[ADDRESS + 4] += 1);
     assert!(
         words.ends_with(&format!(
             ", whose robots are of format {}; this program's are of format {FORMAT}. Write both, \

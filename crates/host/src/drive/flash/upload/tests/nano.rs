@@ -17,7 +17,7 @@ fn an_old_nano_is_found_at_its_own_speed_and_keeps_its_boot_loader() {
     let image = whole_image("paper");
     assert!(run.board.flash[..image.end()] == *image.bytes());
     assert!(run.board.flash[0x7800..] == Double::old_nano().flash[0x7800..]);
-    assert!(run.board.was_left, "the program is started");
+    assert!(run.board.has_started_program, "the program is started");
 }
 
 #[test]
@@ -26,7 +26,7 @@ fn a_byte_lost_on_the_way_to_an_old_nano_is_recovered_at_its_speed() {
     let nano = |lost| {
         let mut board = Double::old_nano();
         board.flash[..code.end()].copy_from_slice(code.bytes());
-        board.lost_to = lost;
+        board.lost_byte_to_board = lost;
         run_with(board, &large)
     };
     let bytes = nano(None).board.received;
