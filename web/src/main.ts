@@ -382,7 +382,7 @@ async function start(): Promise<void> {
       steer.readGamepads();
       // Without a robot there is nothing to draw.
       if (!session.description) return;
-      if (!parts.is3d || floor.unseen) floor.draw(session.description.plate, keep.shown(session.last), keep.beside);
+      if (!parts.is3d || floor.paintsAlways) floor.draw(session.description.plate, keep.shown(session.last), keep.beside);
       keep.drawn();
       parts.draw(session.last);
       pictures += 1;

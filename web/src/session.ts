@@ -5,7 +5,7 @@ import { type SavedChanges, kept } from './kept';
 import { Deadman } from './link/deadman';
 import { type Answer, Dialogue, DroppedQuestion, GREETING } from './link/dialogue';
 import type { Link, Simulated } from './link/link';
-import { flash, identify, imageOf, type Piece, type Progress, Unfit } from './link/stk500';
+import { flash, identify, imageOf, type Piece, type Progress, FirmwareMismatch } from './link/stk500';
 import { UnoLink } from './link/uno-link';
 import {
   type Description,
@@ -462,7 +462,7 @@ export class Session {
     this.mayAsk = false;
     void this.link.wait(BOOTS).then(() => {
       // The board may have restarted meanwhile, or the boot loader may use the line.
-      if (this.banners !== number || dialogue.over) return;
+      if (this.banners !== number || dialogue.isClosed) return;
       this.mayAsk = true;
       if (this.isReal && !this.isWatching) void this.watch();
     });
@@ -561,9 +561,9 @@ export class Session {
   async flashRobot(progress: Progress): Promise<void> {
     const { boardBanner, code, section, description } = this;
     if (!code) throw new Error('the firmware has not come yet');
-    if (boardBanner === null) throw new Unfit('this firmware is not on the board: write firmware and robot');
+    if (boardBanner === null) throw new FirmwareMismatch('this firmware is not on the board: write firmware and robot');
     if (isBanner(boardBanner) && boardBanner.version !== description.version) {
-      throw new Unfit(`the board has firmware ${boardBanner.version}, and this robot is for ${description.version}: write firmware and robot`);
+      throw new FirmwareMismatch(`the board has firmware ${boardBanner.version}, and this robot is for ${description.version}: write firmware and robot`);
     }
     // Without a banner the firmware's version is unknown, so its code is compared.
     await this.write({ at: description.start, bytes: section }, progress, isBanner(boardBanner) ? null : { at: 0, bytes: code });
@@ -571,9 +571,9 @@ export class Session {
 
   private async write(piece: Piece, progress: Progress, under: Piece | null): Promise<void> {
     const { link } = this;
-    if (link.kind === 'radio') throw new Unfit(BY_CABLE);
+    if (link.kind === 'radio') throw new FirmwareMismatch(BY_CABLE);
     if (piece.at + piece.bytes.length > NANO_BOOT && link.mayBeNano && !this.listener.isUno(NANO_BOOT)) {
-      throw new Unfit(`a Nano has ${NANO_BOOT} bytes of flash before its boot section, and this takes ${piece.at + piece.bytes.length}; gaits can be left out until it fits`);
+      throw new FirmwareMismatch(`a Nano has ${NANO_BOOT} bytes of flash before its boot section, and this takes ${piece.at + piece.bytes.length}; gaits can be left out until it fits`);
     }
     this.dialogue.end();
     this.boardBanner = undefined;

@@ -81,7 +81,7 @@ class World {
     if (acts && !this.isCut) [this.activity, this.left, this.phase] = [gait, Number(count), 0];
     await this.wait(this.delay);
     if (this.isCut) return this.wait(2).then(() => false);
-    if (acts) this.protocol.doing(gait);
+    if (acts) this.protocol.setActivity(gait);
     return true;
   }
 
@@ -96,7 +96,7 @@ class World {
   cut(isSaid) {
     this.isCut = true;
     if (isSaid === 'silent') this.protocol.stop('the robot is silent');
-    else this.protocol.doing('');
+    else this.protocol.setActivity('');
     void this.wait(DEADMAN).then(() => (this.activity = 'stop'));
   }
 
@@ -114,14 +114,14 @@ class World {
     this.activity = 'stop';
     if (this.isCut) return;
     this.protocol.received('# done');
-    this.protocol.doing('stop');
+    this.protocol.setActivity('stop');
   }
 
   async moment() {
     this.seconds += 1 / MOMENTS;
     this.move();
     this.farthest = Math.max(this.farthest, Math.hypot(this.place.x, this.place.y));
-    this.protocol.look(this.isHidden ? null : this.back);
+    this.protocol.setPlace(this.isHidden ? null : this.back);
     const due = this.timers.filter((timer) => timer.due <= this.seconds);
     this.timers = this.timers.filter((timer) => timer.due > this.seconds);
     for (const { done } of due) done();
@@ -131,7 +131,7 @@ class World {
   /** Runs a plan to its end, and five seconds on; `happens` is called in each moment. Returns the reason of an early end. */
   async run(plan, happens = () => {}) {
     let [isOver, why] = [false, null];
-    this.protocol.look(this.back);
+    this.protocol.setPlace(this.back);
     const over = this.protocol.run(plan).catch((error) => (why = error.message)).then(() => (isOver = true));
     for (let after = 0; after < 5 * MOMENTS; after += isOver ? 1 : 0) {
       assert.ok(this.seconds < 1000, `it goes on: ${this.lines}`);

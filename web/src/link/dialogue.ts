@@ -7,17 +7,17 @@ import type { Link } from './link';
 /** The beginning of the firmware's first line. */
 export const GREETING = '# lizard ';
 /** The largest length of a robot's line; longer ones are noise and are cut. */
-const LONGEST = 500;
+const MAX_LINE_LENGTH = 500;
 /** Time within which an answer must come, ms. */
 const TIMEOUT = 3000;
 /** Time from one `stop` to the next while none is answered, ms. */
-const AGAIN = 250;
+const STOP_INTERVAL = 250;
 /** Time within which the answers to earlier `stop` lines have come, ms. */
-const ECHOES = 500;
+const LATE_STOP_ANSWERS_MS = 500;
 /** Time without an expected answer after which a robot counts as silent, ms. */
 export const SILENCE = 800;
 /** The texts that a Bluetooth module inserts into the line when its link begins and ends. */
-const MODULE = /OK\+(CONN|LOST)/g;
+const MODULE_TEXTS = /OK\+(CONN|LOST)/g;
 /**
  * Answers to `stop` of a robot without pulses, which rests or has no robot in its flash. The whole line must match: one that a radio
  * has cut off may be the beginning of an older answer.
@@ -50,12 +50,12 @@ export interface DialogueListener {
 /** Thrown for a question that was dropped before its answer. */
 export class DroppedQuestion extends Error {}
 
-interface Ends {
+interface PromiseCallbacks {
   answered: (answer: Answer) => void;
   failed: (error: Error) => void;
 }
 
-interface Question extends Ends {
+interface Question extends PromiseCallbacks {
   line: string;
   quiet: boolean;
   timeout: number;
@@ -63,7 +63,7 @@ interface Question extends Ends {
 
 /** A `stop` that has no answer yet, and how often it was sent. */
 interface Stop {
-  ends: Ends[];
+  ends: PromiseCallbacks[];
   times: number;
 }
 
@@ -92,7 +92,7 @@ export class Dialogue {
   private repeatedAnswer = '';
   private notes: string[] = [];
   /** True while something else uses the line, such as the boot loader. */
-  over = false;
+  isClosed = false;
 
   constructor(
     readonly link: Link,
@@ -107,7 +107,7 @@ export class Dialogue {
    */
   ask(line: string, quiet = false, timeout = TIMEOUT): Promise<Answer> {
     return new Promise((answered, failed) => {
-      if (this.over) throw new Error(`"${line}" was not sent: the boot loader has the line`);
+      if (this.isClosed) throw new Error(`"${line}" was not sent: the boot loader has the line`);
       if (line.trim().toLowerCase() === WORDS.stop) return this.halt({ answered, failed });
       this.waiting.push({ line, quiet, timeout, answered, failed });
       void this.next();
@@ -122,7 +122,7 @@ export class Dialogue {
     this.notes = [];
     if (this.stop) this.listener.stopping(false);
     this.stop = null;
-    this.hears();
+    this.setHeard();
     for (const { failed } of dropped) failed(new DroppedQuestion());
     this.forgetWaiting();
   }
@@ -132,7 +132,7 @@ export class Dialogue {
   }
 
   /** Stops the robot. Waiting lines are dropped, since they could make it walk on. */
-  private halt(ends: Ends): void {
+  private halt(ends: PromiseCallbacks): void {
     this.forgetWaiting();
     if (this.stop) {
       this.stop.ends.push(ends);
@@ -141,16 +141,16 @@ export class Dialogue {
     const stop = (this.stop = { ends: [ends], times: 0 });
     this.listener.sent(WORDS.stop);
     this.listener.stopping(true);
-    void this.insist(stop);
-    void this.link.wait(SILENCE).then(() => this.stop === stop && this.hears(false));
+    void this.repeatStop(stop);
+    void this.link.wait(SILENCE).then(() => this.stop === stop && this.setHeard(false));
   }
 
-  private async insist(stop: Stop): Promise<void> {
+  private async repeatStop(stop: Stop): Promise<void> {
     while (this.stop === stop) {
       stop.times += 1;
       // The link itself reports a port that accepts no more bytes.
       this.link.write(this.encoder.encode(`${WORDS.stop}\n`)).catch(() => {});
-      await this.link.wait(AGAIN);
+      await this.link.wait(STOP_INTERVAL);
     }
   }
 
@@ -160,7 +160,7 @@ export class Dialogue {
     if (!repeated) return;
     this.repeatedAnswer = `ok ${repeated.line}`;
     const go = async () => {
-      while (this.repeated === repeated && !this.over) {
+      while (this.repeated === repeated && !this.isClosed) {
         this.link.write(this.encoder.encode(`${repeated.line}\n`)).catch(() => {});
         await this.link.wait(every);
       }
@@ -168,16 +168,16 @@ export class Dialogue {
     void go();
   }
 
-  private stopped(stop: Stop, answer: Answer): void {
+  private finishStop(stop: Stop, answer: Answer): void {
     this.stop = null;
     this.listener.stopping(false);
-    this.hears();
+    this.setHeard();
     // Answers come in order, so the answer to the previous line has been lost.
     const { pending: asked } = this;
     this.pending = null;
     asked?.failed(new DroppedQuestion());
     for (const { answered } of stop.ends) answered(answer);
-    const echoes = (this.echoes = stop.times > 1 ? this.link.wait(ECHOES) : null);
+    const echoes = (this.echoes = stop.times > 1 ? this.link.wait(LATE_STOP_ANSWERS_MS) : null);
     void echoes?.then(() => {
       if (this.echoes === echoes) this.echoes = null;
       void this.next();
@@ -185,7 +185,7 @@ export class Dialogue {
     void this.next();
   }
 
-  private hears(does = true): void {
+  private setHeard(does = true): void {
     if (this.isSilent === !does) return;
     this.isSilent = !does;
     this.listener.silent(!does);
@@ -193,12 +193,12 @@ export class Dialogue {
 
   /** Ends the dialogue; the link may then have another listener. */
   end(): void {
-    this.over = true;
+    this.isClosed = true;
     this.forget();
   }
 
   private async next(): Promise<void> {
-    if (this.pending || this.stop || this.echoes || this.over) return;
+    if (this.pending || this.stop || this.echoes || this.isClosed) return;
     const question = this.waiting.shift();
     if (!question) return;
     this.pending = question;
@@ -206,7 +206,7 @@ export class Dialogue {
     if (!question.quiet) this.listener.sent(question.line);
     try {
       await this.link.write(this.encoder.encode(`${question.line}\n`));
-      void this.link.wait(SILENCE).then(() => this.pending === question && this.hears(false));
+      void this.link.wait(SILENCE).then(() => this.pending === question && this.setHeard(false));
       await this.link.wait(question.timeout);
       if (this.pending === question) throw new Error(`no answer to "${question.line}"`);
     } catch (error) {
@@ -218,16 +218,16 @@ export class Dialogue {
   }
 
   private bytes(bytes: Uint8Array): void {
-    if (this.over) return;
+    if (this.isClosed) return;
     this.text += this.decoder.decode(bytes);
     const lines = this.text.split(/\r?\n/);
-    this.text = (lines.pop() ?? '').slice(-LONGEST);
-    for (const line of lines) if (line !== '') this.line(line.slice(-LONGEST));
+    this.text = (lines.pop() ?? '').slice(-MAX_LINE_LENGTH);
+    for (const line of lines) if (line !== '') this.line(line.slice(-MAX_LINE_LENGTH));
   }
 
   private line(received: string): void {
     // A reset cuts off the board's line, perhaps an answer, and the banner follows on the same line.
-    const line = received.slice(Math.max(0, received.indexOf(GREETING))).replace(MODULE, '');
+    const line = received.slice(Math.max(0, received.indexOf(GREETING))).replace(MODULE_TEXTS, '');
     if (line === '') return;
     this.listener.arrived(line);
     const { pending: question, stop } = this;
@@ -241,7 +241,7 @@ export class Dialogue {
     if (line === `ok ${WORDS.stop}` || (stop && CANNOT_MOVE.test(line))) {
       if (!stop) return;
       this.listener.received(line);
-      this.stopped(stop, { ok: line.startsWith('ok'), text: line, notes: [] });
+      this.finishStop(stop, { ok: line.startsWith('ok'), text: line, notes: [] });
       return;
     }
     const isFit = question !== null && fits(line, question.line);
@@ -249,7 +249,7 @@ export class Dialogue {
     if (!isQuiet) this.listener.received(line);
     if (!isFit) return;
     this.pending = null;
-    this.hears();
+    this.setHeard();
     const { notes } = this;
     this.notes = [];
     question.answered({ ok: line.startsWith('ok'), text: line, notes });

@@ -18,7 +18,7 @@ const FLASH = 0x46;
 
 const PAGE = 128;
 /** A page of `rjmp .-2`, a jump to itself. */
-const IDLE = Uint8Array.from({ length: PAGE }, (_, n) => (n % 2 === 0 ? 0xff : 0xcf));
+const IDLE_PAGE = Uint8Array.from({ length: PAGE }, (_, n) => (n % 2 === 0 ? 0xff : 0xcf));
 const SIGNATURE = [0x1e, 0x95, 0x0f];
 const FLASH_SIZE = 32 * 1024;
 
@@ -35,7 +35,7 @@ const LATE_TIME = 40;
 export type Progress = (done: number, of: number, what: 'comparing' | 'writing' | 'verifying') => void;
 
 /** Thrown if the board's firmware does not match; nothing was written. */
-export class Unfit extends Error {}
+export class FirmwareMismatch extends Error {}
 
 /** The bytes of a HEX file up to its end, in whole pages. Throws an error for the user. */
 export function imageOf(hex: string): Uint8Array {
@@ -94,7 +94,7 @@ class Loader {
   }
 }
 
-async function call(link: Link, loader: Loader): Promise<void> {
+async function reachBootLoader(link: Link, loader: Loader): Promise<void> {
   await link.wait(BLINKING_TIME);
   for (let n = 1; ; n++) {
     loader.forget();
@@ -113,7 +113,7 @@ async function call(link: Link, loader: Loader): Promise<void> {
 async function begin(link: Link): Promise<Loader> {
   const loader = new Loader(link);
   await link.reset();
-  await call(link, loader);
+  await reachBootLoader(link, loader);
   const signature = await loader.command([READ_SIGNATURE], 3);
   if (signature.some((byte, i) => byte !== SIGNATURE[i])) {
     const hex = signature.map((byte) => byte.toString(16).padStart(2, '0')).join(' ');
@@ -166,7 +166,7 @@ export async function flash(link: Link, piece: Piece, progress: Progress, requir
   };
   if (required && (await firstDifference(required, 'comparing')) >= 0) {
     await loader.command([LEAVE]);
-    throw new Unfit('the firmware of the board is another one, in which this robot may not fit: write firmware and robot');
+    throw new FirmwareMismatch('the firmware of the board is another one, in which this robot may not fit: write firmware and robot');
   }
   const image = inPages(piece);
   const write = async (at: number, page: Uint8Array) => {
@@ -181,7 +181,7 @@ export async function flash(link: Link, piece: Piece, progress: Progress, requir
   // its real content is written last.
   const startsHere = piece.at === 0;
   progress(0, image.length, 'writing');
-  if (startsHere) await write(0, IDLE);
+  if (startsHere) await write(0, IDLE_PAGE);
   for (let at = startsHere ? PAGE : 0; at < image.length; at += PAGE) {
     progress(at, image.length, 'writing');
     await write(at, image.subarray(at, at + PAGE));

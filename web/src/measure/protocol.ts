@@ -4,17 +4,17 @@ import { DONE, GAITS, WORDS } from '../words';
 import type { Back } from './seen';
 
 /** Most cycles of a walk back, most attempts, and the least share of the distance that must lie ahead or behind. */
-const BACK = { cycles: 12, tries: 2, aside: 0.7 };
+const RETURN = { cycles: 12, tries: 2, minAhead: 0.7 };
 /** Least distance per cycle of a gait that leads back, mm, and its largest turn, deg. */
-const LEADS = { way: 3, turn: 2 };
+const RETURN_GAIT = { way: 3, turn: 2 };
 /** Distance from the middle beyond which the robot first returns, if the next walk would leave the sheet, mm. */
-const MIDDLE = 80;
+const RETURN_DISTANCE = 80;
 /** Distance outward near the end of the sheet that ends a walk, mm; not less, as a gait swings within its cycle. */
-const OUTWARD = 20;
+const MAX_OUTWARD = 20;
 /** Time for which the robot may walk unseen, s. */
-const UNSEEN = 2;
+const MAX_UNSEEN_S = 2;
 /** Least cycles of a walk: the first and the last are not measured. A walk cut earlier counts as this many. */
-export const FEWEST = 4;
+export const MIN_CYCLES = 4;
 
 /** A gait that the robot walked, on the film's clock. */
 export interface Walk {
@@ -24,7 +24,7 @@ export interface Walk {
 }
 
 /** The predicted movement of a cycle of a gait: mm and deg. */
-export interface Way {
+export interface PredictedCycle {
   command: string;
   forward: number;
   turn: number;
@@ -50,7 +50,7 @@ export interface Stage {
   /** Waits some seconds. */
   wait: (seconds: number) => Promise<void>;
   /** Returns the predicted movements of the gaits, as far as they are known. */
-  ways: () => Way[];
+  ways: () => PredictedCycle[];
   /** Asks a person to put the robot back; resolves when that is done, or when the protocol is over. */
   putBack: () => Promise<void>;
   say: (text: string) => void;
@@ -78,11 +78,11 @@ export class Protocol {
   readonly walks: Walk[] = [];
   private waiting: Waiting | null = null;
   /** The last line that the protocol has sent. */
-  private own = '';
+  private lastSent = '';
   /** Called when the protocol is over. */
   onEnd: () => void = () => {};
   /** The reason why the protocol is over, or null. */
-  private over: Interrupted | null = null;
+  private endReason: Interrupted | null = null;
   /** The robot's last place, and its time on the film's clock, s. */
   private last: { back: Back; seconds: number } | null = null;
 
@@ -94,32 +94,32 @@ export class Protocol {
     await this.ask(`${WORDS.speed} ${speed}`);
     for (const [i, { command, period }] of gaits.entries()) {
       const { forward = 0 } = stage.ways().find((way) => way.command === command) ?? {};
-      for (let left = cycles; left >= FEWEST; ) {
+      for (let left = cycles; left >= MIN_CYCLES; ) {
         await this.goBack(left * forward);
         await this.wait(pause);
         stage.say(`${i + 1} of ${gaits.length}: ${command}, ${left} cycles`);
         const [begin, end] = await this.walk(command, left, (during) => this.walks.push({ gait: command, during }));
-        left -= Math.max(FEWEST, Math.floor(((end - begin) * speed) / 100 / period));
+        left -= Math.max(MIN_CYCLES, Math.floor(((end - begin) * speed) / 100 / period));
       }
     }
     await this.wait(pause);
   }
 
   /** Takes the robot's place in a picture, null if it shows none. Ends a walk that leads off the sheet. */
-  look(back: Back | null): void {
+  setPlace(back: Back | null): void {
     if (!back) return;
     this.last = { back, seconds: this.stage.now() };
     const { waiting } = this;
     if (waiting === null || waiting.nearest === null) return;
     waiting.nearest = Math.min(waiting.nearest, distance(back));
-    if (back.isNear && distance(back) > waiting.nearest + OUTWARD) this.cut(waiting);
+    if (back.isNear && distance(back) > waiting.nearest + MAX_OUTWARD) this.cut(waiting);
   }
 
   /** Takes a line that was sent to the robot, also by somebody else. */
   sent(line: string): void {
-    const walks = ({ command }: Way) => line === command || line.startsWith(`${command} `);
+    const walks = ({ command }: PredictedCycle) => line === command || line.startsWith(`${command} `);
     if (line === WORDS.stop) this.end('it was stopped');
-    else if (line !== this.own && this.stage.ways().some(walks)) this.end(`the robot was sent "${line}"`);
+    else if (line !== this.lastSent && this.stage.ways().some(walks)) this.end(`the robot was sent "${line}"`);
   }
 
   /** Takes a line that the robot printed; the line at the end of a gait comes before the new activity. */
@@ -130,7 +130,7 @@ export class Protocol {
   }
 
   /** Takes the robot's present activity. */
-  doing(activity: string): void {
+  setActivity(activity: string): void {
     const { waiting } = this;
     const walks = waiting?.gait === activity;
     const stands = activity === WORDS.stop || activity === GAITS.stand;
@@ -147,15 +147,15 @@ export class Protocol {
 
   /** Ends the protocol: nothing more is sent. */
   end(why: string): void {
-    this.over ??= new Interrupted(why);
-    if (this.waiting) this.finish(this.waiting, this.over);
+    this.endReason ??= new Interrupted(why);
+    if (this.waiting) this.finish(this.waiting, this.endReason);
     this.waiting = null;
     this.onEnd();
   }
 
   /** The robot's place, if it was seen just now. */
   private get place(): Back | null {
-    return this.last && this.stage.now() - this.last.seconds < UNSEEN ? this.last.back : null;
+    return this.last && this.stage.now() - this.last.seconds < MAX_UNSEEN_S ? this.last.back : null;
   }
 
   /**
@@ -166,12 +166,12 @@ export class Protocol {
     for (let n = 0; ; n++) {
       const { place, stage } = this;
       const isFit = place !== null && !place.isNear;
-      const leaves = place !== null && n === 0 && distance(place) > MIDDLE && Math.hypot(place.ahead - way, place.aside) > place.reach;
+      const leaves = place !== null && n === 0 && distance(place) > RETURN_DISTANCE && Math.hypot(place.ahead - way, place.aside) > place.reach;
       if (isFit && !leaves) return;
-      const gait = place && n < BACK.tries && Math.abs(place.ahead) > BACK.aside * distance(place) ? this.toward(place.ahead) : null;
+      const gait = place && n < RETURN.tries && Math.abs(place.ahead) > RETURN.minAhead * distance(place) ? this.gaitToward(place.ahead) : null;
       if (place && gait) {
         stage.say(`Back to the middle by ${gait.command}`);
-        await this.walk(gait.command, Math.min(BACK.cycles, Math.max(1, Math.round(place.ahead / gait.forward))));
+        await this.walk(gait.command, Math.min(RETURN.cycles, Math.max(1, Math.round(place.ahead / gait.forward))));
       } else if (isFit) return;
       else await stage.putBack();
       this.check();
@@ -179,10 +179,10 @@ export class Protocol {
   }
 
   /** The gait that goes farthest ahead or back, by the sign of `ahead`, and hardly turns. */
-  private toward(ahead: number): Way | null {
-    const way = ({ forward, turn }: Way) => (Math.abs(turn) < LEADS.turn ? forward * Math.sign(ahead) : 0);
+  private gaitToward(ahead: number): PredictedCycle | null {
+    const way = ({ forward, turn }: PredictedCycle) => (Math.abs(turn) < RETURN_GAIT.turn ? forward * Math.sign(ahead) : 0);
     const [best] = this.stage.ways().sort((a, b) => way(b) - way(a));
-    return best && way(best) > LEADS.way ? best : null;
+    return best && way(best) > RETURN_GAIT.way ? best : null;
   }
 
   /** Walks a gait to its last cycle, or to the end of the sheet; returns its begin and end, which `keep` gets even if it was interrupted. */
@@ -213,7 +213,7 @@ export class Protocol {
   private async watch(waiting: Waiting): Promise<void> {
     while (this.waiting === waiting && !waiting.isCut) {
       if (!this.place) return this.cut(waiting);
-      await this.stage.wait(UNSEEN / 4);
+      await this.stage.wait(MAX_UNSEEN_S / 4);
     }
   }
 
@@ -230,7 +230,7 @@ export class Protocol {
   }
 
   private check(): void {
-    if (this.over) throw this.over;
+    if (this.endReason) throw this.endReason;
   }
 
   private async wait(seconds: number): Promise<void> {
@@ -240,7 +240,7 @@ export class Protocol {
 
   private async ask(line: string): Promise<void> {
     this.check();
-    this.own = line;
+    this.lastSent = line;
     if (!(await this.stage.ask(line))) this.stop(`the robot did not take "${line}"`);
     this.check();
   }

@@ -29,7 +29,7 @@ export class Recorder {
   private parts: Part[] = [];
   /** Cycles of the gait until the moment `counted`. */
   private cycles = 0;
-  private counted: number;
+  private countedUntil: number;
 
   /** Begins with the robot's activity and its pace, percent. */
   constructor(
@@ -38,14 +38,14 @@ export class Recorder {
     private pace: number,
     private since: number,
   ) {
-    this.counted = since;
+    this.countedUntil = since;
   }
 
   /** Takes the robot's current activity. */
   setGait(gait: string, at: number): void {
     if (gait === this.gait) return;
     this.parts = this.partsUntil(at);
-    [this.gait, this.since, this.counted, this.cycles] = [gait, at, at, 0];
+    [this.gait, this.since, this.countedUntil, this.cycles] = [gait, at, at, 0];
   }
 
   /** Takes a new pace, percent. */
@@ -81,8 +81,8 @@ export class Recorder {
 
   private count(at: number): void {
     const { period } = this.currentGait ?? {};
-    if (period !== undefined) this.cycles += ((at - this.counted) * this.pace) / 100 / period;
-    this.counted = at;
+    if (period !== undefined) this.cycles += ((at - this.countedUntil) * this.pace) / 100 / period;
+    this.countedUntil = at;
   }
 
   /** All parts, the current activity as the last one. */

@@ -47,7 +47,7 @@ export class Floor {
   /** The tracks of the robot and of the second robot. */
   private tracks: { x: number; y: number }[][] = [[], []];
   /** True if the floor is painted in every frame, even behind the robot in 3D: for a film or a picture. */
-  unseen = false;
+  paintsAlways = false;
   /** The last drawn frame, for a picture as PNG or SVG. */
   private shown: [Plate, Frame | null, Frame | null] | null = null;
   /** Everything that the picture on the canvas depends on, except the colours; empty if it must be painted again. */
@@ -120,7 +120,7 @@ export class Floor {
     if (this.canvas.dataset.zoom !== zoom) this.canvas.dataset.zoom = zoom;
     const robots = [frame, second].map((robot) => robot && [robot.place, robot.scene, robot.slides]);
     const picture = JSON.stringify([width, height, devicePixelRatio, this.zoom, this.centre, plate, robots, this.tracks.map((track) => [track.length, track.at(-1)])]);
-    if (picture === this.painted && !this.unseen) return;
+    if (picture === this.painted && !this.paintsAlways) return;
     const area = surface(this.canvas, true);
     if (!area) return;
     const { pen } = area;

@@ -139,7 +139,7 @@ export class Keep {
   drawn(): void {
     this.onDrawn?.();
     this.onDrawn = null;
-    this.floor.unseen = this.film !== null;
+    this.floor.paintsAlways = this.film !== null;
   }
 
   /** Updates the numbers, some times a second. */
@@ -185,7 +185,7 @@ export class Keep {
   /** Takes a picture of the next drawing, even behind the robot in 3D. */
   private takePicture(take: () => void): void {
     this.onDrawn = take;
-    this.floor.unseen = true;
+    this.floor.paintsAlways = true;
   }
 
   private get format(): (typeof FILMS)[number] | undefined {

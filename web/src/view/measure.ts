@@ -4,7 +4,7 @@ import { transfer } from 'comlink';
 import type { AskedWalk } from '../../generated/measure';
 import { files } from '../files';
 import { Helper } from '../helper';
-import { FEWEST, Interrupted, Protocol, type Walk } from '../measure/protocol';
+import { MIN_CYCLES, Interrupted, Protocol, type Walk } from '../measure/protocol';
 import { Seen } from '../measure/seen';
 import { Source } from '../measure/source';
 import type { FilmFunctions } from '../measure/worker';
@@ -24,7 +24,7 @@ import { drawSight } from './sight';
 const LEAST = { way: 3, turn: 2 };
 const NUMBERS: Record<string, Range & { value: number | null }> = {
   speed: { min: 10, max: 100, step: 5, value: 100 },
-  cycles: { min: FEWEST, max: 50, step: 1, value: 8 },
+  cycles: { min: MIN_CYCLES, max: 50, step: 1, value: 8 },
   pause: { min: 0.5, max: 30, step: 0.5, value: 1 },
   height: { min: 0, max: 500, step: 0.5, value: null },
   ruler: { min: 85, max: 115, step: 0.1, value: 100 },
@@ -138,7 +138,7 @@ export class MeasureView {
   }
 
   did(activity: string): void {
-    this.protocol?.doing(activity);
+    this.protocol?.setActivity(activity);
   }
 
   /** Updates words some times a second. */
@@ -197,7 +197,7 @@ export class MeasureView {
     const isKept = this.doing === 'record' || this.doing === 'play' || (this.doing === 'drive' && !this.isPutBack);
     try {
       this.seen.take(await film.ask((film) => film.look(transfer(picture, [picture]), seconds, isKept)));
-      this.protocol?.look(this.seen.back);
+      this.protocol?.setPlace(this.seen.back);
       drawSight(this.view.querySelector('canvas') as HTMLCanvasElement, this.seen);
     } catch (error) {
       this.say(messageOf(error), true);
@@ -269,7 +269,7 @@ export class MeasureView {
       say: (text) => this.say(text),
     });
     this.protocol = protocol;
-    protocol.look(this.seen.back);
+    protocol.setPlace(this.seen.back);
     this.doing = 'drive';
     this.show();
     try {

@@ -37,9 +37,9 @@ export class RobotText {
       void this.loadAndShow(this.box.value);
     });
     this.box.addEventListener('input', onText);
-    this.undo.addEventListener('click', () => void this.back());
-    this.redo.addEventListener('click', () => void this.again());
-    element('robot-line').addEventListener('click', () => this.toLine());
+    this.undo.addEventListener('click', () => void this.undoLast());
+    this.redo.addEventListener('click', () => void this.redoLast());
+    element('robot-line').addEventListener('click', () => this.goToMistake());
     element('robot-link').addEventListener('click', () => void this.copyLink());
     element('robot-code').addEventListener('click', () => void this.showCode());
     const opener = element<HTMLInputElement>('robot-open');
@@ -69,7 +69,7 @@ export class RobotText {
     if (this.shown !== toml) this.undone = [];
     this.shown = toml;
     this.box.value = toml;
-    this.say(null);
+    this.showRefusal(null);
   }
 
   /** The text as it is shown: the session's robot, or one that is being written or has a mistake. */
@@ -90,7 +90,7 @@ export class RobotText {
       return toml === this.session().toml || (await this.loadAndShow(toml));
     } catch (error) {
       reveal(this.box);
-      this.say({ refused: messageOf(error), meaning: null, line: null, key: '' });
+      this.showRefusal({ refused: messageOf(error), meaning: null, line: null, key: '' });
       return false;
     }
   }
@@ -99,7 +99,7 @@ export class RobotText {
     reveal(this.box);
     // A binary file is not shown in the box.
     const toml = file.size > 1_000_000 ? '' : await file.text();
-    if (toml === '' || toml.includes('\0')) return this.say({ refused: `${file.name} is not a robot.toml.`, meaning: null, line: null, key: '' });
+    if (toml === '' || toml.includes('\0')) return this.showRefusal({ refused: `${file.name} is not a robot.toml.`, meaning: null, line: null, key: '' });
     await this.loadAndShow(toml);
   }
 
@@ -108,7 +108,7 @@ export class RobotText {
     const refused = await this.session().change(toml);
     if (!refused) return true;
     this.box.value = toml;
-    this.say(refused);
+    this.showRefusal(refused);
     return false;
   }
 
@@ -116,7 +116,7 @@ export class RobotText {
   private async loadAndShow(toml: string): Promise<boolean> {
     if (await this.loadText(toml)) return true;
     reveal(this.box);
-    this.toLine();
+    this.goToMistake();
     return false;
   }
 
@@ -131,7 +131,7 @@ export class RobotText {
   }
 
   /** Restores the robot before the last change; texts with a mistake do not count. */
-  async back(): Promise<void> {
+  async undoLast(): Promise<void> {
     if (this.refused) return this.showRobot();
     const { before, undone, shown } = this;
     const last = before.at(-1);
@@ -139,7 +139,7 @@ export class RobotText {
   }
 
   /** Restores the robot that was undone last. */
-  private async again(): Promise<void> {
+  private async redoLast(): Promise<void> {
     const { before, undone, shown } = this;
     const next = undone.at(-1);
     if (next !== undefined) await this.restore(next, [...before, shown], undone.slice(0, -1));
@@ -153,15 +153,15 @@ export class RobotText {
     const refused = await this.session().change(toml);
     if (!refused) return;
     Object.assign(this, now);
-    this.say(refused);
+    this.showRefusal(refused);
   }
 
   private async copyLink(): Promise<void> {
     try {
       await navigator.clipboard.writeText(await linkTo(this.session().toml));
-      this.tell('The link is copied: it opens this robot, without the comments of its text.');
+      this.showMessage('The link is copied: it opens this robot, without the comments of its text.');
     } catch (error) {
-      this.tell(`The link could not be copied: ${messageOf(error)}`);
+      this.showMessage(`The link could not be copied: ${messageOf(error)}`);
     }
   }
 
@@ -171,22 +171,22 @@ export class RobotText {
     const isShown = drawn.childElementCount === 0;
     element('robot-code').setAttribute('aria-pressed', String(isShown));
     drawn.replaceChildren();
-    if (!isShown) return this.tell('');
+    if (!isShown) return this.showMessage('');
     try {
       const { qrCode } = await import('./qr-code');
       drawn.replaceChildren(qrCode(await linkTo(this.session().toml)));
       const isHere = ['localhost', '127.0.0.1', '[::1]'].includes(location.hostname);
-      this.tell(isHere ? 'This address is this computer’s own: a phone reaches the page only where a web server serves it.' : 'A phone’s camera opens this robot.');
+      this.showMessage(isHere ? 'This address is this computer’s own: a phone reaches the page only where a web server serves it.' : 'A phone’s camera opens this robot.');
     } catch (error) {
-      this.tell(`No code can be drawn: ${messageOf(error)}`);
+      this.showMessage(`No code can be drawn: ${messageOf(error)}`);
     }
   }
 
-  private tell(text: string): void {
+  private showMessage(text: string): void {
     element('robot-said').textContent = text;
   }
 
-  private toLine(): void {
+  private goToMistake(): void {
     const line = this.refused?.line;
     if (line == null) return;
     const lines = this.box.value.split('\n');
@@ -196,14 +196,14 @@ export class RobotText {
     this.box.scrollTop = ((line - 4) / lines.length) * this.box.scrollHeight;
   }
 
-  private say(refused: Refused | null): void {
+  private showRefusal(refused: Refused | null): void {
     this.refused = refused;
     element('robot-refusal').hidden = refused === null;
     element('robot-refusal').textContent = refused?.refused ?? '';
     const button = element('robot-line');
     button.hidden = refused?.line == null;
     button.textContent = `Go to line ${refused?.line}`;
-    this.tell('');
+    this.showMessage('');
     // The code that was shown belongs to another robot.
     element('robot-drawn').replaceChildren();
     element('robot-code').setAttribute('aria-pressed', 'false');

@@ -55,7 +55,7 @@ export class RoutinesView {
     on('keep', () => void this.keep());
     on('drop', () => this.offer([]));
     on('add', () => void this.add());
-    on('undo', () => void this.text.back());
+    on('undo', () => void this.text.undoLast());
     on('start', () => void this.start());
     on('write', () => void this.write());
   }

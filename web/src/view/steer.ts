@@ -82,7 +82,7 @@ export class Steer {
   private atStick: Direction = { ahead: 0, left: 0 };
   private atPad: Direction = { ahead: 0, left: 0 };
   /** False from a release until the gamepads' sticks are let go, so that a stick still held no longer drives. */
-  private padCounts = true;
+  private isPadActive = true;
   private isPressed = false;
   /** The element that the pointer pressed last, until Tab moves the focus. */
   private touched: EventTarget | null = null;
@@ -140,8 +140,8 @@ export class Steer {
     }
     this.isPressed = isPressed;
     if (this.walking && this.isBarred()) this.release();
-    this.padCounts ||= Math.hypot(direction.ahead, direction.left) < DEAD_ZONE;
-    if (!this.padCounts || this.isAway || (direction.ahead === this.atPad.ahead && direction.left === this.atPad.left)) return;
+    this.isPadActive ||= Math.hypot(direction.ahead, direction.left) < DEAD_ZONE;
+    if (!this.isPadActive || this.isAway || (direction.ahead === this.atPad.ahead && direction.left === this.atPad.left)) return;
     this.atPad = direction;
     this.follow();
   }
@@ -150,7 +150,7 @@ export class Steer {
   release(stops = true): void {
     this.held.clear();
     this.atPad = { ahead: 0, left: 0 };
-    this.padCounts = false;
+    this.isPadActive = false;
     if (!stops) this.walking = null;
     this.drag(null);
   }

@@ -1,5 +1,5 @@
 // Writes firmware or robot to a board, and shows progress and result in every display.
-import { Unfit } from '../link/stk500';
+import { FirmwareMismatch } from '../link/stk500';
 import type { Session } from '../session';
 import { messageOf } from '../trouble';
 
@@ -58,7 +58,7 @@ export class Writer {
       const where = isReal ? '' : ` to the ${name}`;
       message.textContent = `written${where} and verified in ${written(performance.now() - start)}`;
     } catch (error) {
-      message.textContent = `not written: ${messageOf(error)}${isTouched && !(error instanceof Unfit) ? TORN[what === 'robot' ? 'robot' : 'all'] : ''}`;
+      message.textContent = `not written: ${messageOf(error)}${isTouched && !(error instanceof FirmwareMismatch) ? TORN[what === 'robot' ? 'robot' : 'all'] : ''}`;
     }
     progress.hidden = true;
     this.isWriting = false;
