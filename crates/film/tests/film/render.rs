@@ -185,7 +185,7 @@ impl Studio {
             let (x, y) = ((i % width) as f64, (i / width) as f64);
             let middle = view.meet([x, y], 0.0);
             let is_near = (0..2).any(|strip| {
-                let [u, v] = Turned::new(self.strips[strip]).to_local(middle);
+                let [u, v] = Turned::new(self.strips[strip]).local_point(middle);
                 u.abs() < sheet::STRIP[0] && v.abs() < sheet::STRIP[1]
             });
             *light = match is_near {
@@ -210,7 +210,7 @@ impl Studio {
             return *grey;
         }
         for (strip, spot) in self.strips.iter().enumerate() {
-            let [u, v] = Turned::new(*spot).to_local(at);
+            let [u, v] = Turned::new(*spot).local_point(at);
             let [u, v] = [u / self.print[0], v / self.print[1]];
             if u.abs() > sheet::STRIP[0] / 2.0 || v.abs() > sheet::STRIP[1] / 2.0 {
                 continue;
@@ -413,7 +413,7 @@ impl Turned {
     }
 
     /// Converts a point of the floor to this place's frame: along the heading, and to the left.
-    fn to_local(&self, at: [f64; 2]) -> [f64; 2] {
+    fn local_point(&self, at: [f64; 2]) -> [f64; 2] {
         let Self([x, y], [cos, sin]) = self;
         let (dx, dy) = (at[0] - x, at[1] - y);
         [dx * cos + dy * sin, dy * cos - dx * sin]
@@ -421,7 +421,7 @@ impl Turned {
 
     /// Converts a point of the floor to the robot's frame: right, ahead.
     fn frame(&self, at: [f64; 2]) -> [f64; 2] {
-        let [ahead, left] = self.to_local(at);
+        let [ahead, left] = self.local_point(at);
         [-left, ahead]
     }
 }
