@@ -9,11 +9,13 @@ export class Scope {
     const rises = [];
     const changes = [];
     for (const [name, port] of Object.entries(uno.ports)) {
-      port.addListener((now, before) => changes.push({ first: FIRST[name], now, before }));
+      port.addListener((now, before) => {
+        changes.push({ first: FIRST[name], now, before });
+        uno.hasChanged = true;
+      });
     }
     // An edge belongs to the end of its instruction, whichever kind of store it is.
-    uno.afterInstruction = () => {
-      if (changes.length === 0) return;
+    uno.afterChange = () => {
       for (const { first, now, before } of changes) {
         for (let bit = 0; bit < 8; bit++) {
           if (!(((now ^ before) >> bit) & 1)) continue;

@@ -1,5 +1,7 @@
 // A boot loader writes the part of flash that it does not run from, page by page (data sheet, chapter 26). avr8js
 // treats SPM as a NOP. Here an erase and a write take no time, so a loader's wait for their end is short.
+import { avrInstruction } from 'avr8js';
+
 const SPM = 0x95e8;
 const SPMCSR = 0x57;
 const COMMAND = 0x1f;
@@ -10,14 +12,11 @@ const PAGE = 128;
 const Z = 30;
 
 export function selfProgramming(uno) {
-  const { cpu, flash } = uno;
-  const { data } = cpu;
-  const instruction = uno.instruction;
+  const { flash } = uno;
   const page = new Uint8Array(PAGE).fill(0xff);
-  uno.instruction = () => {
-    const programs = cpu.progMem[cpu.pc] === SPM;
-    instruction();
-    if (!programs) return;
+  const execute = (cpu) => {
+    const { data } = cpu;
+    avrInstruction(cpu);
     const address = data[Z] | (data[Z + 1] << 8);
     const start = address & ~(PAGE - 1) & (flash.length - 1);
     switch (data[SPMCSR] & COMMAND) {
@@ -35,4 +34,5 @@ export function selfProgramming(uno) {
     }
     data[SPMCSR] &= ~COMMAND;
   };
+  uno.executeBy(execute, (opcode) => opcode === SPM);
 }

@@ -31,6 +31,8 @@ const EEPROM = 1024;
 const EEPROM_CYCLES = (3.4e-3 * FREQUENCY) / 2;
 
 const MCUSR = 0x54;
+const SREG = 0x5f;
+const I = 0x80;
 const PORF = 0x01;
 const RXC = 0x80;
 
@@ -64,23 +66,45 @@ export class Uno {
 
     /** The cycle at which the run ends. */
     this.until = 0;
-    /** Executes an instruction; corrections wrap it. */
-    this.instruction = () => avrInstruction(cpu);
-    /** Called after an instruction, before the events that are due by then. */
-    this.afterInstruction = () => {};
+    /** Functions that execute an instruction, and for each opcode the number of its own; 0 is avr8js. */
+    this.executors = [avrInstruction];
+    this.executorOf = new Uint8Array(0x10000);
+    /** Called instead of an instruction while the processor sleeps; null while it is awake. */
+    this.sleep = null;
+    /** True if a port has changed. */
+    this.hasChanged = false;
+    /** Called after an instruction that has changed a port, before the events that are due by then. */
+    this.afterChange = () => {};
 
     for (const correct of corrections) correct(this);
   }
 
+  /** Executes the instructions whose opcode passes a test by `execute(cpu)`. Only these cost more time than avr8js itself. */
+  executeBy(execute, passes) {
+    const number = this.executors.push(execute) - 1;
+    for (let opcode = 0; opcode <= 0xffff; opcode++) if (passes(opcode)) this.executorOf[opcode] = number;
+  }
+
   /** Runs to a cycle, or an instruction farther. */
   run(until) {
-    const { cpu } = this;
+    const { cpu, executors, executorOf } = this;
+    const { data, progMem } = cpu;
     this.until = until;
     while (cpu.cycles < until) {
-      this.instruction();
-      this.afterInstruction();
+      if (this.sleep !== null) {
+        this.sleep();
+      } else {
+        const executor = executorOf[progMem[cpu.pc]];
+        if (executor === 0) avrInstruction(cpu);
+        else executors[executor](cpu);
+      }
+      if (this.hasChanged) {
+        this.hasChanged = false;
+        this.afterChange();
+      }
       const event = cpu.nextClockEvent;
-      if (cpu.nextInterrupt >= 0 || (event !== null && event.cycles <= cpu.cycles)) cpu.tick();
+      const isDue = event !== null && event.cycles <= cpu.cycles;
+      if (isDue || (cpu.nextInterrupt >= 0 && data[SREG] & I)) cpu.tick();
     }
   }
 

@@ -37,7 +37,9 @@ const program = (switchOn) => `
 
 const seen = (corrections, switchOn) => run(corrections, program(switchOn), 100).cpu.data.slice(20, 22);
 
-for (const switchOn of ['sei', 'out 0x3f, r18']) {
+// 0x5f is SREG's address as a store has it.
+const toSreg = 'ldi r30, 0x5e\n ldi r31, 0\n';
+for (const switchOn of ['sei', 'out 0x3f, r18', 'sts 0x5f, r18', `${toSreg} std Z+1, r18`, `${toSreg} inc r30\n st Z, r18`]) {
   test(`one instruction runs between \`${switchOn}\` and an interrupt, and one between two interrupts`, () => {
     assert.deepEqual([...seen([], switchOn)], [0, 0], fixed('interrupt-waits.js'));
     assert.deepEqual([...seen([interruptWaits], switchOn)], [1, 2]);

@@ -1,21 +1,33 @@
 // The instruction after the one that switches interrupts on runs before any interrupt (data sheet,
 // 7.7). Programs rely on it: the compiler restores the stack pointer by `out SREG` and `out SPL`, and
 // an interrupt between the two overwrites the stack. avr8js serves it at once.
+import { avrInstruction } from 'avr8js';
+
 const SREG = 0x5f;
 const I = 0x80;
+
+/** True for SEI, RETI, `out SREG`, and the stores that can reach SREG. */
+const mayEnable = (opcode) =>
+  opcode === 0x9478 ||
+  opcode === 0x9518 ||
+  (opcode & 0xfe0f) === 0xbe0f ||
+  (opcode & 0xd200) === 0x8200 || // std
+  ((opcode & 0xfe00) === 0x9200 && (opcode & 0xf) < 0xf); // sts, st; not push
 
 export function interruptWaits(uno) {
   const { cpu } = uno;
   const { data } = cpu;
-  const instruction = uno.instruction;
-  let justOn = false;
-  uno.instruction = () => {
+  /** The cycle at which the instruction ended that has just switched interrupts on. */
+  let on = -1;
+  const execute = () => {
     const wasOn = data[SREG] & I;
-    instruction();
-    justOn = !wasOn && data[SREG] & I;
+    avrInstruction(cpu);
+    if (!wasOn && data[SREG] & I) on = cpu.cycles;
   };
+  uno.executeBy(execute, mayEnable);
   const tick = cpu.tick.bind(cpu);
   cpu.tick = () => {
+    const justOn = cpu.cycles === on;
     if (justOn) data[SREG] &= ~I;
     tick();
     if (justOn) data[SREG] |= I;
