@@ -71,7 +71,7 @@ physics: ## every gait by the contact model and the engine MuJoCo; WRITE=1 store
 	$(call prepared,.physics)
 mutants: ## make mistakes on purpose, report those that no test notices; PART=board, core or kinematics; SAMPLE=60 SEED=1: fresh ones, with the rate
 	$(call prepared,.mutants)
-other-robots: ## every test of the image on the files of robots/ and on random valid robots; SEED=1 COUNT=10, EXCEPT=large
+other-robots: ## every test of the image on the files of robots/ and on random valid robots; SEED=1 COUNT=10, EXCEPT=large+grain
 	$(call prepared,.other-robots)
 trouble: ## stalls, resets, dips of the supply and drives by radio at random moments; SEED=1, COUNT=10000, ONLY=number
 	$(call prepared,.trouble)
