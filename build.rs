@@ -24,7 +24,8 @@ fn main() {
     let out = env::var_os("OUT_DIR").unwrap_or_else(|| stop("OUT_DIR is not set"));
     let out = PathBuf::from(out);
     write(&out.join("robot.bin"), &robot.section());
-    // Where everything is in flash; the section is where lizard_core::numbers::section::START says.
+    // The linker script lays out the flash. The address of the robot's section comes from
+    // lizard_core::numbers::section::START.
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("avr-specs/atmega328p.ld");
     println!("cargo::rerun-if-changed={}", script.display());
     println!("cargo::rustc-link-arg-bins=-Wl,-T,{}", script.display());
@@ -36,7 +37,7 @@ fn main() {
     for name in ["ROBOT", "MARK", "SIMAVR"] {
         println!("cargo::rustc-link-arg-bins=-Wl,--undefined={name}");
     }
-    // OUT_DIR is build/<package>/out in the folder that the firmware goes to.
+    // OUT_DIR is build/<package>/out in the folder of the firmware.
     if let Some(beside) = out.ancestors().nth(3) {
         write(
             &beside.join("gaits.txt"),

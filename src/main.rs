@@ -15,9 +15,9 @@ mod simavr;
 
 use board::{Uno, sleep};
 
-/// The state of main. Its address is fixed, so the compiler puts it into the instructions:
-/// on the stack, every access would have to compute it, and the program would be a tenth
-/// larger.
+/// The state of main. A static has a fixed address, which the compiler puts into the
+/// instructions. On the stack, every access would have to compute the address, and the
+/// program would be a tenth larger.
 static mut MAIN: Main = Main::new();
 
 #[avr_device::entry]

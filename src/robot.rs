@@ -1,8 +1,8 @@
 //! The robot's section, which lies after the code in flash.
 //!
 //! The code is the same for any lizard. The robot is a separate section
-//! ([`lizard_core::numbers::section`]) at a fixed address. The program reads it from there, so
-//! that another robot can be written over the one that it was built with.
+//! ([`lizard_core::numbers::section`]) at a fixed address. The program reads the robot from there,
+//! so that an upload can replace the robot without the program.
 
 use lizard_core::numbers::section::SPACE;
 

@@ -1,7 +1,7 @@
 //! The note in the ELF file that tells stock simavr the chip, the clock and the voltages. It is not
-//! part of the flash. Without it simavr assumes a supply of 3.3 V, too low to move.
+//! part of the flash. Without the note, simavr assumes a supply of 3.3 V, too low to move.
 
-/// A tag of simavr's `avr_mcu_section.h` with a number of 32 bits.
+/// Returns a tag of simavr's `avr_mcu_section.h` with a number of 32 bits.
 const fn number(tag: u8, value: u32) -> [u8; 6] {
     let [a, b, c, d] = value.to_le_bytes();
     [tag, 4, a, b, c, d]
@@ -17,7 +17,7 @@ struct Simavr {
     end: [u8; 2],
 }
 
-/// Tags 1 to 5: name, clock in Hz, VCC, AVCC and AREF in mV; 0 ends them.
+/// The note: tags 1 to 5 for name, clock in Hz, VCC, AVCC and AREF in mV, then the end tag 0.
 #[used]
 #[unsafe(no_mangle)]
 #[unsafe(link_section = ".mmcu")]

@@ -3,8 +3,7 @@
 use std::path::PathBuf;
 use std::process::Command;
 
-/// The version of libsimavr for which the corrections were made. With another version, tests of the data sheet fail
-/// or hang.
+/// The version of libsimavr that the shim corrects. With another version, tests of the data sheet fail or hang.
 const TESTED: &str = "1.6";
 
 fn main() {
@@ -37,8 +36,8 @@ fn main() {
              sudo apt-get install libsimavr-dev libelf-dev\n{error}"
         );
     }
-    // A program that links the C library statically cannot load a shared library. Without the word `static`, the
-    // linker may choose libelf.so.
+    // A program that links the C library statically cannot load a shared library. Without `static:`, the linker may
+    // choose libelf.so.
     let features = std::env::var("CARGO_CFG_TARGET_FEATURE").unwrap_or_default();
     if features.split(',').any(|feature| feature == "crt-static") {
         for library in ["simavr", "elf", "z"] {
@@ -54,7 +53,8 @@ fn main() {
     println!("cargo:rustc-link-lib=m");
 }
 
-/// Returns the folder in which the C compiler finds a library. rustc searches only the folders that it is given.
+/// Returns the folder in which the C compiler finds a library; `None` if it finds none. rustc itself searches only
+/// the folders that it is given.
 fn folder_of(library: &str) -> Option<PathBuf> {
     let compiler = cc::Build::new().try_get_compiler().ok()?;
     let argument = format!("-print-file-name={library}");
@@ -64,7 +64,7 @@ fn folder_of(library: &str) -> Option<PathBuf> {
     Some(path.parent()?.to_owned()).filter(|folder| folder.is_absolute())
 }
 
-/// Ends the build if pkg-config reports a version of libsimavr other than [`TESTED`], or none.
+/// Ends the build if pkg-config reports a version of libsimavr other than [`TESTED`], or no version.
 fn check_version() {
     let mut ask = Command::new("pkg-config");
     let output = ask.args(["--modversion", "simavr"]).output();

@@ -1,5 +1,5 @@
-//! Compiler and linker for small AVR programs in tests: the functions of `simulated_uno`, and two separate steps
-//! for a program that is changed between compiler and linker.
+//! Compiler and linker for small AVR programs in tests: the functions of `simulated_uno`, and separate functions to
+//! compile and to link, for a program that a test changes between the two steps.
 
 use std::fs;
 
@@ -12,7 +12,7 @@ const FLAGS: [&str; 4] = ["-O2", "-std=gnu11", "-mrelax", "-ffunction-sections"]
 /// Compiles C with avr-gcc to an object with a section for each function.
 ///
 /// # Errors
-/// Returns avr-gcc's own message if it rejects the program.
+/// Returns avr-gcc's own message if avr-gcc rejects the program.
 pub fn object_of_c(source: &str) -> Result<Vec<u8>, String> {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let [input, object] = ["program.c", "program.o"].map(|name| folder.path().join(name));

@@ -1,8 +1,8 @@
 //! Test bench for the firmware: powers it on, talks to it and measures its pulses.
 //!
 //! A test of the running firmware should read like the actions of a person with a board: `boot`, `say("walk")`,
-//! wait some frames, check the pulses. This is [`SimulatedBoard`] with the robot under test, and every failure ends
-//! the test.
+//! wait some frames, check the pulses. The bench is a [`SimulatedBoard`] with the robot under test; every failure
+//! panics and so ends the test.
 
 use std::ops::{Deref, DerefMut};
 use std::path::PathBuf;
@@ -19,15 +19,16 @@ use crate::robots::{robot, root};
 pub struct FirmwareBench(SimulatedBoard);
 
 impl FirmwareBench {
-    /// The path of the firmware that `make firmware` builds, or of the one that `LIZARD_ELF` names.
+    /// The path of the firmware's ELF file: the one that `LIZARD_ELF` names, or else the one that `make firmware`
+    /// builds.
     ///
-    /// The file may contain any robot: see [`FirmwareBench::image`].
+    /// The file may contain any robot; [`FirmwareBench::image`] replaces it.
     pub fn elf() -> PathBuf {
         let built = root().join("target/avr-atmega328p/release/lizard.elf");
         std::env::var_os("LIZARD_ELF").map_or(built, PathBuf::from)
     }
 
-    /// The firmware's image with [`robot`] in it.
+    /// The firmware's image, in which [`robot`] replaces the robot of the file.
     ///
     /// # Panics
     /// If there is no firmware.
@@ -36,7 +37,7 @@ impl FirmwareBench {
         IMAGE.clone()
     }
 
-    /// The firmware's image with another robot in it.
+    /// The firmware's image, in which this robot replaces the robot of the file.
     ///
     /// # Panics
     /// If there is no firmware.
@@ -80,7 +81,7 @@ impl FirmwareBench {
     /// Sends a line and returns its answer: see [`SimulatedBoard::say`].
     ///
     /// # Panics
-    /// If no answer comes.
+    /// If the firmware does not answer.
     pub fn say(&mut self, line: &str) -> String {
         or_panic(self.0.say(line))
     }
@@ -88,7 +89,7 @@ impl FirmwareBench {
     /// Sends a line and returns its notes and its answer: see [`SimulatedBoard::ask`].
     ///
     /// # Panics
-    /// If no answer comes.
+    /// If the firmware does not answer.
     pub fn ask(&mut self, line: &str) -> (Vec<String>, String) {
         or_panic(self.0.ask(line))
     }
@@ -96,7 +97,7 @@ impl FirmwareBench {
     /// Runs the firmware for some milliseconds: see [`SimulatedBoard::run_ms`].
     ///
     /// # Panics
-    /// If the firmware crashes, halts or is reset meanwhile.
+    /// If the firmware crashes, halts or is reset during this time.
     pub fn run_ms(&mut self, ms: u64) {
         or_panic(self.0.run_ms(ms));
     }
@@ -112,7 +113,7 @@ impl FirmwareBench {
     /// Runs the firmware for some frames and returns them: see [`SimulatedBoard::run_for_frames`].
     ///
     /// # Panics
-    /// If the firmware crashes, halts or is reset meanwhile.
+    /// If the firmware crashes, halts or is reset during these frames.
     pub fn run_for_frames(&mut self, count: u64) -> Vec<Frame> {
         or_panic(self.0.run_for_frames(count))
     }

@@ -1,4 +1,5 @@
-//! The duration of tests with random inputs: short on a developer's machine, long in continuous integration.
+//! The number of random inputs and the duration of tests: small on a developer's machine, large in continuous
+//! integration.
 
 use std::num::NonZeroU64;
 
@@ -10,7 +11,7 @@ pub fn scaled(count: u64) -> u64 {
     count * number("LIZARD_FUZZ", 1)
 }
 
-/// Minutes of a test's dialogue: the environment variable `LIZARD_MINUTES`, 10 by default.
+/// Reads the minutes of a test's dialogue from the environment variable `LIZARD_MINUTES`, 10 by default.
 ///
 /// # Panics
 /// If `LIZARD_MINUTES` is not a whole number of at least 1.
@@ -18,7 +19,7 @@ pub fn minutes() -> u64 {
     number("LIZARD_MINUTES", 10)
 }
 
-/// Reads a number from the environment. Rejects 0, since such a test would try nothing.
+/// Reads a number from the environment. Rejects 0, with which a test would check nothing.
 fn number(name: &str, otherwise: u64) -> u64 {
     std::env::var(name).map_or(otherwise, |given| match given.parse::<NonZeroU64>() {
         Ok(number) => number.get(),

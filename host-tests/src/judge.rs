@@ -1,8 +1,8 @@
 //! Comparison of the simulated UNO with a second, independent simulator, avr8js.
 //!
-//! The simulated UNO is built on simavr, and a fault of simavr can make the firmware look better than it is. avr8js
-//! is written in another language by other people. Both get the same image and the same bytes at the same cycles,
-//! and their results are compared: every pulse of every pin, and every byte.
+//! The simulated UNO is built on simavr, and an error of simavr can hide an error of the firmware. avr8js is written
+//! in another language by other people. Both simulators get the same image and the same bytes at the same cycles, and
+//! their outputs are compared: every pulse of every servo, and every byte of the console.
 
 use std::fmt;
 use std::io::ErrorKind;
@@ -16,16 +16,17 @@ use simulated_uno::{Edge, Image, Pin, SerialByte};
 
 use crate::robots::root;
 
-/// Cycles at the end of a run that are not compared: there, one simulator may already have finished a pulse or byte
-/// that the other has not.
+/// Cycles at the end of a run in which pulses are not compared, since a pulse may have ended on one simulator and not
+/// yet on the other.
 const LAST_CYCLES: u64 = 1_000;
 
-/// Cycles by which Timer1 starts later on avr8js, and with it everything that the firmware does: simavr counts from
-/// the first cycle of the instruction that starts it, avr8js from its last. The bytes are sent later by as much, so
-/// that they meet the firmware in the same state. Then the two agree to the cycle, or not at all.
+/// Cycles by which Timer1 starts later on avr8js, and so everything that the firmware does: simavr's Timer1 counts
+/// from the first cycle of the instruction that starts it, that of avr8js from the last cycle. The bytes are sent to
+/// avr8js later by as much, so that they arrive in the same state of the firmware. Then the outputs agree to the
+/// cycle, or not at all.
 pub const AVR8JS_LAG: i64 = 1;
 
-/// A pulse and its pin.
+/// A pulse of a pin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PinPulse {
     /// The pin.
@@ -43,10 +44,10 @@ impl fmt::Display for PinPulse {
     }
 }
 
-/// The recorded outputs of one simulator in a run from power-on.
+/// The outputs of one simulator, recorded in a run from power-on.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Outputs {
-    /// The complete pulses of all pins, in the order of their ends.
+    /// The complete pulses of all pins, in the order of their falling edges.
     pub pulses: Vec<PinPulse>,
     /// The bytes that the UNO sent, each with the cycle at which its stop bit ends.
     pub sent: Vec<SerialByte>,
@@ -90,11 +91,11 @@ pub struct Avr8jsRun {
     pub cpu_ms: u64,
 }
 
-/// Runs an image on avr8js. `received` are the bytes on the serial line, each with the cycle at which it is
-/// complete on simavr; `end` is the cycle at which the run ends.
+/// Runs an image on avr8js. `received` are the bytes sent to the UNO, each with the cycle at which it is complete on
+/// simavr; `end` is the cycle at which the run ends.
 ///
 /// # Errors
-/// Returns a message that names a missing program, or a feature that avr8js cannot simulate.
+/// Returns a message if a program is missing or fails, for example because avr8js cannot simulate a feature.
 pub fn run_on_avr8js(
     image: &Image,
     received: &[SerialByte],
@@ -127,7 +128,7 @@ pub fn run_on_avr8js(
     Ok(verdict)
 }
 
-/// Runs the judge's own tests, which show each fault of avr8js and its correction.
+/// Runs the tests of tools/judge, which show each error of avr8js and its correction. Returns their output.
 ///
 /// # Errors
 /// Fails if a program is missing or a test fails.
@@ -135,7 +136,7 @@ pub fn run_own_tests() -> Result<String, String> {
     let folder = judge_folder().join("test");
     let files = std::fs::read_dir(&folder).map_err(|error| error.to_string())?;
     let paths = files.filter_map(|file| Some(file.ok()?.path()));
-    // The files are named one by one, because versions of Node treat a folder differently.
+    // The files are named one by one, because different versions of Node treat a folder differently.
     let tests = paths.filter(|path| path.to_string_lossy().ends_with(".test.js"));
     run_program(node()?.arg("--test").args(tests), "nodejs", "")
 }
@@ -144,7 +145,7 @@ fn judge_folder() -> PathBuf {
     root().join("tools/judge")
 }
 
-/// Returns the command for Node, if the package avr8js is installed.
+/// Returns the command that starts Node. Fails if the package avr8js is not installed.
 fn node() -> Result<Command, String> {
     let package = judge_folder().join("node_modules/avr8js/package.json");
     if !package.exists() {
@@ -153,7 +154,8 @@ fn node() -> Result<Command, String> {
     Ok(Command::new("node"))
 }
 
-/// Runs a program on `input` and returns its output.
+/// Runs a program on `input` and returns its output. `debian` is the Debian package that contains the program, for
+/// the error message.
 fn run_program(command: &mut Command, debian: &str, input: &str) -> Result<String, String> {
     let program = command.get_program().to_string_lossy().into_owned();
     let output = LIMIT.output(command, input.as_bytes());
@@ -172,7 +174,8 @@ fn run_program(command: &mut Command, debian: &str, input: &str) -> Result<Strin
     Err(format!("{program} fails: {}\n{printed}", complaint.trim()))
 }
 
-/// Parses the output of tools/judge/run.js, whose head explains the lines.
+/// Parses the output of tools/judge/run.js; the comment at the top of that file describes the lines. Returns `None`
+/// if the output is malformed.
 fn read(printed: &str) -> Option<Avr8jsRun> {
     let mut verdict = Avr8jsRun::default();
     for line in printed.lines() {
@@ -201,16 +204,16 @@ fn read(printed: &str) -> Option<Avr8jsRun> {
     (verdict.eeprom.len() == 1024).then_some(verdict)
 }
 
-/// The result of comparing the two simulators.
+/// The result of comparing two simulators whose outputs agree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Agreement {
     /// The kind of records compared: pulses or bytes.
     pub what: &'static str,
     /// The number of records.
     pub count: usize,
-    /// Cycles by which all records of avr8js are later.
+    /// Cycles by which the records of avr8js are later than those of simavr.
     pub offset: i64,
-    /// The largest deviation from this offset, cycles.
+    /// The largest deviation of a record from `offset`, cycles.
     pub jitter: u64,
 }
 
@@ -230,8 +233,8 @@ impl fmt::Display for Agreement {
 }
 
 /// Compares the servos' pulses to the cycle: their pins, their order, their widths, and their rising edges except
-/// for a constant offset. The offset is allowed because the data sheet does not say in which of its cycles an
-/// instruction reaches a peripheral.
+/// for a constant offset. The offset is allowed because the data sheet does not specify in which cycle of an
+/// instruction a peripheral receives a write.
 ///
 /// # Errors
 /// Returns a message about the first difference.
@@ -278,7 +281,7 @@ pub fn compare_pulses(
     })
 }
 
-/// Compares the bytes that the console sent.
+/// Compares the bytes that the console has sent, and measures the deviation of their times from a constant offset.
 ///
 /// # Errors
 /// Returns a message about the first difference.
@@ -325,7 +328,7 @@ fn ended_pulses(pulses: &[PinPulse], limit: u64) -> Vec<PinPulse> {
         .collect()
 }
 
-/// Returns the text up to byte `n`, at most about a line of it.
+/// Returns the last 60 bytes, about a line, of the text up to byte `n`.
 fn tail(bytes: &[SerialByte], n: usize) -> String {
     let end = bytes.len().min(n + 1);
     let bytes: Vec<u8> = bytes[end.saturating_sub(60)..end]

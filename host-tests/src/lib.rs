@@ -1,5 +1,5 @@
-//! Shared parts of the tests: the robots under test, a bench with the running firmware, and small
-//! AVR programs that test the bench itself.
+//! Shared parts of the tests: the robots under test, a bench with the running firmware, random trouble, the
+//! comparison with a second simulator, and a compiler for small AVR programs.
 
 pub mod avr_gcc;
 mod bench;

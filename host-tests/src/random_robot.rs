@@ -1,9 +1,10 @@
 //! Generator of random, valid robots without symmetry.
 //!
-//! In the paper's robot, left equals right, head equals tail and every limit of a margin is .3, so a mistake that
-//! exchanges two of them changes nothing. Here every length, servo and limit is different. A robot is written as
-//! the text of a robot.toml and read by [`Robot::parse`], which rejects invalid ones, so each result is a robot
-//! that a builder could have. Each has a gait that moves, and every second one measures its servos' rail.
+//! In the paper's robot, left equals right, head equals tail and every limit of a margin is 0.3, so code that
+//! exchanges two of these numbers by mistake works all the same. In a random robot every length, servo and limit is
+//! different. A robot is written as the text of a robot.toml and read by [`Robot::parse`], which rejects invalid
+//! robots, so each result is a robot that a builder could have. Each robot has a gait that moves, and about half of
+//! the robots measure their servos' rail.
 
 use std::fmt::Write;
 
@@ -16,20 +17,20 @@ use lizard_robot::Robot;
 /// Number of drafts of a robot after which the search ends.
 const DRAFTS: usize = 1000;
 
-/// The pins that a servo may be on.
+/// The pins to which a servo may be connected.
 const PINS: [&str; 17] = [
     "D2", "D3", "D4", "D5", "D6", "D7", "D8", "D9", "D10", "D11", "D12", "A0", "A1", "A2", "A3",
     "A4", "A5",
 ];
 
-/// Names of servos and of legs, in servo order.
+/// Names of the servos in robot.toml, in servo order; `LEGS` are the names of their legs.
 const SERVOS: [&str; 4] = ["A1", "A2", "A3", "A4"];
 const LEGS: [&str; 4] = ["LF", "RF", "RH", "LH"];
 
 /// Returns a random valid robot and the text that it was read from.
 ///
 /// # Panics
-/// If no draft is a valid robot; then the generator is wrong.
+/// If no draft is a valid robot, which means that the generator has an error.
 pub fn random_robot(rng: &mut Rng) -> (String, Robot) {
     (0..DRAFTS)
         .find_map(|_| {
@@ -49,8 +50,8 @@ pub fn random_robot(rng: &mut Rng) -> (String, Robot) {
         .expect("one draft in a few is a valid robot")
 }
 
-/// Returns the same robot with as many more gaits as the board has room for, so that no room is left for the maps
-/// of certified cells. Their names have `length` characters and differ only in the last two.
+/// Returns a robot with as many additional gaits as the board has room for, so that no room is left for the maps
+/// of certified cells. The names of these gaits have `length` characters and differ only in the last two.
 ///
 /// # Panics
 /// If the robot has no gait that moves, or is not valid.
@@ -58,7 +59,7 @@ pub fn with_many_gaits(text: &str, length: usize) -> Robot {
     let robot = Robot::parse(text).expect("a valid robot");
     let like = robot.gaits().iter().find(|gait| gait.moves());
     let like = like.expect("a gait that moves").name();
-    // With its own gains, a gait may need its own waveform.
+    // Leaves room for one waveform more, in case the additional gaits need their own.
     let taken = robot.content().section().len() + size_of::<Wave>();
     let room = usize::from(SPACE).saturating_sub(taken);
     let gaits = (0..room / (size_of::<Gait>() + length)).map(|n| {
@@ -75,7 +76,7 @@ struct Body {
     neutral: [f64; 4],
     limits: Limits,
     servos: [String; 4],
-    /// The pins of the servos, then all others.
+    /// The pins of the four servos, then all other pins.
     pins: [&'static str; PINS.len()],
     slew: [f64; 2],
     lizard: Lizard,
@@ -123,7 +124,7 @@ impl Body {
             let first = random_between(rng, 0.35, 0.65);
             links[halves[0]] = round(nominal * first);
             links[halves[1]] = round(nominal * (1.0 - first));
-            // Limits the stroke, so that a slider keeps a positive length.
+            // Limits how far a slider may shorten, so that its length stays positive.
             limits.stroke_min = limits.stroke_min.max(-round(0.8 * nominal));
         }
         lizard.links = Links::from(links);
@@ -204,7 +205,7 @@ impl Body {
     }
 }
 
-/// Returns a safe neutral pose with some room around it, deg; `None` if none was found.
+/// Returns a random neutral pose whose margins exceed their limits by `ROOM`, deg; `None` if no such pose was found.
 fn neutral(rng: &mut Rng, lizard: &Lizard, limits: &Limits) -> Option<[f64; 4]> {
     /// Distance of every margin from its limit.
     const ROOM: f64 = 0.12;
@@ -243,7 +244,7 @@ fn rail(rng: &mut Rng, pins: &[&'static str]) -> String {
 /// A function that returns a gait's text for a size from 0 to 1; some gaits ignore the size.
 type GaitOfSize = Box<dyn Fn(f64) -> String>;
 
-/// Returns gaits of every kind.
+/// Returns random gaits of every kind: waves, held gaits, reversed and mirrored gaits, and paths of head and tail.
 fn gaits(rng: &mut Rng, body: &Body) -> Vec<GaitOfSize> {
     let mut gaits = Vec::new();
     let period = |rng: &mut Rng| round(random_between(rng, 0.7, 3.0));
@@ -290,7 +291,7 @@ fn gaits(rng: &mut Rng, body: &Body) -> Vec<GaitOfSize> {
             legs([size, 1.0, 0.5 * size, -0.5 * size].map(round_factor))
         )
     }));
-    // The paths are around the end point's position in the neutral pose.
+    // A path of head or tail is centred at the end point's position in the neutral pose.
     let Ok(solution) = body.lizard.solve(&body.neutral.into()) else {
         return gaits;
     };
@@ -312,8 +313,8 @@ fn gaits(rng: &mut Rng, body: &Body) -> Vec<GaitOfSize> {
     gaits
 }
 
-/// Returns the text of a robot with one more gait, as large as the robot allows, or without the gait if even a
-/// small one is rejected.
+/// Returns the text of a robot with one gait more, of the largest size that the robot allows, or the unchanged text
+/// if the gait is rejected at every size.
 fn with_allowed_gait(text: String, gait: &GaitOfSize) -> String {
     [1.0, 0.6, 0.35, 0.2, 0.1, 0.05]
         .into_iter()

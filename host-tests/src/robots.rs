@@ -38,7 +38,7 @@ pub fn robot() -> &'static Robot {
 }
 
 /// The robot under test with two inputs and a routine added. If flash has no room for them, some
-/// gaits are left out.
+/// gaits are removed.
 ///
 /// # Panics
 /// If there is no room even with one gait.
@@ -50,7 +50,7 @@ pub fn patrolling() -> &'static Robot {
     &ROBOT
 }
 
-/// The robot of a file with two inputs and a routine, with as many of its gaits as there is
+/// The robot of a robot.toml's text with two inputs and a routine added, and with as many of its gaits as there is
 /// room for.
 ///
 /// # Errors
@@ -60,7 +60,7 @@ pub fn patrol_of(text: &str) -> Result<Robot, lizard_robot::Error> {
     with_patrol(text, &[REST]).or_else(|error| {
         let robot = Robot::parse(text)?;
         let names = robot.gaits().iter().skip(1).map(|gait| gait.name());
-        // A gait to which another gait or a routine refers cannot be left out.
+        // A gait to which another gait or a routine refers cannot be removed.
         let mut fewer = names.rev().map(|name| without_gait(text, name));
         let fewer = fewer.find(|text| Robot::parse(text).is_ok()).ok_or(error)?;
         patrol_of(&fewer)
@@ -81,7 +81,7 @@ pub fn paper() -> &'static Robot {
     &ROBOT
 }
 
-/// The robot under test, every robot of robots/, and random robots, which are the same in every
+/// The robot under test, every robot in robots/, and random robots, which are the same in every
 /// run with the same [`seed`].
 ///
 /// # Panics
@@ -131,8 +131,8 @@ pub fn seed() -> u64 {
     })
 }
 
-/// A generator of random numbers for each `stream`, the same in every run with the same
-/// [`seed`].
+/// Returns a generator of random numbers. Each `stream` has its own sequence, which is the same in every run with the
+/// same [`seed`].
 pub fn rng(stream: u64) -> Rng {
     Rng::with_seed(seed().wrapping_mul(1_000_003).wrapping_add(stream))
 }

@@ -1,8 +1,8 @@
-//! Robustness test of the core on this machine: two million random bytes, two million lines that are nearly valid
-//! and two thousand EEPROM contents. Each line has one answer, no pulse is outside the limits, and the memory is
-//! always valid.
+//! Robustness test of the core, compiled for this machine: two million random bytes, two million lines that are
+//! nearly valid and two thousand EEPROM contents. Each line must get one answer, no pulse may be outside the limits,
+//! and the EEPROM must always be valid.
 //!
-//! With `LIZARD_FUZZ=3`, as in continuous integration, it takes three times as many.
+//! With `LIZARD_FUZZ=3`, as in continuous integration, the test takes three times as many inputs.
 
 use std::thread;
 
@@ -15,7 +15,7 @@ use lizard_host_tests::{robot, scaled};
 #[path = "firmware/lines.rs"]
 mod lines;
 
-/// The number of bytes and of lines, and a thousand times the number of EEPROM contents.
+/// The number of bytes, the number of lines, and a thousand times the number of EEPROM contents.
 const COUNT: u64 = 2_000_000;
 
 /// Number of threads on which a test runs.
@@ -84,7 +84,7 @@ fn millions_of_lines_that_are_nearly_right_do_no_harm_to_the_core() {
 fn thousands_of_memories_do_no_harm_to_the_core() {
     in_parts(|rng, count| {
         for _ in 0..count / 1_000 {
-            // Changes one byte, three, or about as many as there are.
+            // Changes one byte, three bytes, or about as many bytes as there are.
             let changed = [1, 3, 3 * CONTENT][rng.usize(..3)];
             let mut data = [0; 3 * CONTENT + 12];
             for _ in 0..changed {

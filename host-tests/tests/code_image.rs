@@ -1,7 +1,7 @@
-//! The firmware's code inside the program `lizard` is the code that the source builds.
+//! Tests that the firmware's code inside the program `lizard` is the code that the source builds.
 //!
-//! Users without a compiler get `firmware/code.hex`. If the source changed without it, nobody would
-//! notice until a board behaves differently from its source.
+//! Users without a compiler get `firmware/code.hex`. If the source were changed but not this file, nobody would
+//! notice until a board behaves differently from the source.
 
 use std::io::Write as _;
 use std::process::Command;
@@ -15,18 +15,18 @@ use lizard_host::sim::supplies;
 use lizard_host_tests::{FirmwareBench, robot, root};
 use simulated_uno::{Fidelity, Image, State, Uno};
 
-/// The advice if the file is out of date.
+/// The failure message if `firmware/code.hex` is out of date.
 const RENEW: &str =
     "firmware/code.hex is not what the source builds: run `make code-image` and commit it";
 
-/// Code without a robot, from address 0 to the robot's section.
+/// Returns the code of an image, from address 0 to the robot's section; 0xff in unused bytes.
 fn code_of(image: &Image) -> Vec<u8> {
     let mut flash = image.flash();
     flash.resize(START.into(), 0xff);
     flash
 }
 
-/// The image inside the program, with the robot under test.
+/// Returns the image inside the program `lizard`, with the section of the robot under test added.
 fn embedded_image() -> Image {
     let mut image = Image::parse_hex(CODE).expect("it is Intel HEX");
     let space = u32::from(START)..0x7e00;
@@ -36,7 +36,7 @@ fn embedded_image() -> Image {
     image
 }
 
-/// The versions of the installed compiler and linker, one per line.
+/// Returns the versions of the installed compiler and linker, one per line.
 fn tools_here() -> String {
     let script = root().join("scripts/code-image");
     let output = Command::new(script)
@@ -49,7 +49,7 @@ fn tools_here() -> String {
     printed
 }
 
-/// A recorded minute of walking, other commands and rest.
+/// Runs an image for a minute of walking, other commands and rest, and returns the recording.
 fn record_minute(image: Image) -> Recording {
     let commands = [
         (1000, "status"),
@@ -94,7 +94,7 @@ fn the_code_inside_the_program_is_what_the_source_builds() {
         assert_eq!(wrong, None, "{RENEW} (the first byte that differs)");
         return;
     }
-    // Not by eprintln!, whose output is hidden if the test passes.
+    // The test harness would hide the output of `eprintln!` if the test passes, so this writes to stderr directly.
     let note = format!(
         "code_image: firmware/code.hex was made by other tools than those here, so its bytes are \
          not compared, but what both do in a minute. It was made by\n{made_by}and here are\n{}",

@@ -1,4 +1,5 @@
-//! Tests of the shell in which the flash tests run: it takes input, shows output, and ends at Ctrl-C.
+//! Tests of the shell in which the flash tests run programs: it passes input on, shows output, and ends the program
+//! at Ctrl-C.
 
 mod shell;
 
@@ -19,7 +20,8 @@ fn ctrl_c_ends_a_command_that_reads_and_prints() {
 
 #[test]
 fn ctrl_c_ends_a_command_even_if_the_tests_ignore_it() {
-    // The same as in a program that a shell without job control starts with `&`.
+    // A shell without job control starts a program with `&` so that it ignores SIGINT. The shell of the tests must
+    // not inherit that.
     let this = std::env::current_exe().expect("it runs");
     let mut again = Command::new("env");
     again.args(["--ignore-signal=INT"]).arg(this);

@@ -39,8 +39,8 @@ fn every_fault_in_the_documentation_names_an_existing_test() {
     assert!(count > 20, "{count}");
 }
 
-/// Makes the rows `| offset | bytes | field |` of a type, in the order of the fields given. The pattern names every
-/// field, so none can be forgotten.
+/// Makes the rows `| offset | bytes | field |` of a type, in the order of the fields given. The pattern must name
+/// every field to compile, so no field can be forgotten.
 macro_rules! rows {
     ($type:ident, $start:expr, [$($field:ident),+ $(,)?]) => {{
         let _ = |$type { $($field: _),+ }: &$type| ();
@@ -112,7 +112,7 @@ fn the_page_of_the_firmware_has_every_field_of_a_robots_section_at_its_place() {
     );
 }
 
-/// Returns the names of crates and items in a text.
+/// Splits a text into words. Dashes, underscores and slashes are part of a word, as in the paths of crates.
 fn identifiers(text: &str) -> BTreeSet<&str> {
     let apart = |c: char| !(c.is_alphanumeric() || "_-/".contains(c));
     text.split(apart).collect()
@@ -184,7 +184,8 @@ fn sources(folder: &Path) -> String {
         .collect()
 }
 
-/// Returns the files of a folder, or the file itself, that contain a word by itself.
+/// Returns the files that contain a whole word, in any case: files of a folder and its subfolders, or the file `path`
+/// itself.
 fn files_with_word(path: &Path, word: &str) -> BTreeSet<PathBuf> {
     if path.is_dir() {
         let entries = fs::read_dir(path).expect("a folder");
@@ -200,8 +201,9 @@ fn files_with_word(path: &Path, word: &str) -> BTreeSet<PathBuf> {
     knows.then(|| path.to_path_buf()).into_iter().collect()
 }
 
-/// Compares the list of files in CONTRIBUTING.md with those that contain `center`. This command is the example,
-/// since the word has no other meaning; `deadman` also occurs in sentences.
+/// Compares the files that CONTRIBUTING.md lists for a console command with the files that contain `center`. The
+/// command `center` is the example because that word has no other meaning, while `deadman` also occurs in sentences.
+/// `center` has no messages of its own, so text.rs is found by `deadman`.
 #[test]
 fn a_console_command_has_at_most_seven_files_and_the_docs_name_them() {
     let page = fs::read_to_string(root().join("CONTRIBUTING.md")).expect("CONTRIBUTING.md");
@@ -230,7 +232,7 @@ fn a_console_command_has_at_most_seven_files_and_the_docs_name_them() {
     assert!(listed.len() <= 7, "{listed:?}");
 }
 
-/// Returns README, CONTRIBUTING and the pages of docs/, with their texts.
+/// Returns the paths and texts of README.md, CONTRIBUTING.md and the pages in docs/.
 fn pages() -> Vec<(PathBuf, String)> {
     let mut paths = vec![root().join("README.md"), root().join("CONTRIBUTING.md")];
     let docs = fs::read_dir(root().join("docs")).expect("docs/");
@@ -243,7 +245,7 @@ fn pages() -> Vec<(PathBuf, String)> {
     paths.into_iter().map(text).collect()
 }
 
-/// Returns the links and pictures of a page: the text between `](` and `)`, or in `src="..."`.
+/// Returns the targets of the links and pictures of a page: the text between `](` and `)`, or in `src="..."`.
 fn links(text: &str) -> Vec<&str> {
     let between = |start: &'static str, end: char| {
         let behind = text.split(start).skip(1);
@@ -321,7 +323,7 @@ fn no_picture_is_on_two_pages_of_the_book() {
     let mut seen = BTreeSet::new();
     for (page, text) in pages() {
         let folder = page.parent().expect("a folder");
-        // README is the book's cover and no page of it.
+        // README.md is not a page of the book.
         if !folder.ends_with("docs") {
             continue;
         }

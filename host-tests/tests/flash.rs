@@ -1,6 +1,5 @@
-//! README's `make flash`: cargo, ravedude and avrdude write the image to a new board. The board is
-//! simulated, with the boot loader of a stock UNO in flash, at a pseudo terminal and in real
-//! time.
+//! Tests of README's `make flash`: cargo, ravedude and avrdude write the image to a new board. The board
+//! is simulated in real time behind a pseudo terminal, with the boot loader of a stock UNO in flash.
 //!
 //! `make flash-test` runs these tests after it has installed the tools.
 
@@ -40,7 +39,7 @@ fn make_flash_writes_the_image_and_the_robot_walks() {
     let truth = Uno::load(&elf, Fidelity::DataSheet).expect("the image loads");
     desk.assert_written(truth.flash());
 
-    // All four servos awake, then two steps.
+    // Waits until all four servos are awake, then walks two steps.
     shell.say("stand");
     desk.wait_for_text(&shell, "ok stand");
     run_frames(&mut desk, AWAKE_FRAMES);
@@ -59,7 +58,7 @@ fn make_flash_writes_the_image_and_the_robot_walks() {
         .map(Frame::widths)
         .collect();
 
-    // The same image in a simulation without boot loader, port and wall clock.
+    // Runs the same image in a simulation without boot loader, port and wall clock.
     let mut bench = FirmwareBench::boot();
     bench.say("stand");
     bench.run_for_frames(AWAKE_FRAMES);
@@ -82,7 +81,7 @@ fn an_upload_keeps_the_eeprom() {
     let kept: [u8; 1024] = std::array::from_fn(|at| (at * 7 + at / 256) as u8);
     desk.uno.set_eeprom(&kept);
     let mut shell = make_flash(&desk);
-    // Checked before the firmware can write a byte of its own.
+    // The EEPROM is compared before the firmware can write to it.
     desk.wait_for_text(&shell, "bytes of flash verified");
     assert!(
         desk.uno.eeprom() == kept,

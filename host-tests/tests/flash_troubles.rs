@@ -11,7 +11,8 @@ use simulated_uno::Port;
 use tempfile::TempDir;
 
 /// Runs `scripts/flash --check` on the serial ports of a folder. Returns its error output, and
-/// true if it succeeds. `port` is the value of RAVEDUDE_PORT.
+/// true if it succeeds. `user` is a command that runs it as another user; if it is empty, the current user runs
+/// it. `port` is the value of RAVEDUDE_PORT.
 fn check_as(user: &[&str], ports: &Path, port: Option<&Path>) -> (String, bool) {
     let scripts = scripts();
     let script = scripts.path().join("scripts/flash");
@@ -145,8 +146,8 @@ fn without_permission_the_message_says_which_group_to_join() {
 
 #[test]
 fn a_missing_avrdude_says_what_to_install() {
-    // Nothing installed, no avrdude and no sudo on the PATH, and a user who is not
-    // root.
+    // A user who is not root, on a machine where no package is installed: dpkg-query finds none, and avrdude and
+    // sudo are not on the PATH.
     let bin = folder();
     for tool in ["bash", "env", "id", "dirname", "grep", "apt-get"] {
         let at = Path::new("/usr/bin").join(tool);

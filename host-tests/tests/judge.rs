@@ -1,5 +1,5 @@
-//! The same image on two simulators: they must agree about every pulse and every byte.
-//! docs/judges.md describes both, and the meaning of their agreement.
+//! Tests that run the same image on two simulators, which must agree about every pulse and every byte.
+//! docs/judges.md describes both simulators and the meaning of their agreement.
 
 use std::thread;
 
@@ -10,14 +10,14 @@ use lizard_host_tests::judge::{
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin, SerialByte};
 
-/// A standing robot on the simulated UNO, with everything recorded since power-on.
+/// Returns a standing robot on the simulated UNO, with everything recorded since power-on.
 fn awake() -> FirmwareBench {
     let mut bench = FirmwareBench::power_on(Fidelity::DataSheet);
     bench.run_ms(1000);
     bench
 }
 
-/// The commands of all gaits.
+/// Returns the commands for all gaits.
 fn gaits() -> Vec<String> {
     let names = robot().gaits().iter().map(|gait| gait.name());
     names.map(|name| name.replace('-', " ")).collect()
@@ -32,14 +32,14 @@ enum TimeTolerance {
     /// Less than an iteration of main's loop, which notices only once per iteration that the EEPROM
     /// is ready or that a byte of a flood has arrived.
     Turn,
-    /// Any: the times are not compared. The bytes of a flood that are lost while long
-    /// answers are sent depend on single cycles, in which two simulators may differ.
+    /// Any difference: the consoles are not compared. Single cycles, in which two simulators may differ,
+    /// decide which bytes of a flood are lost while long answers are sent.
     Any,
 }
 
-/// Cycles of the longest iteration of main's loop: it computes a frame, at most 12 000 cycles, and
-/// writes a piece of a line. If the EEPROM becomes ready just before an iteration in one simulator,
-/// it may do so just after its start in the other, which then notices it in the next iteration.
+/// Upper bound of the cycles of an iteration of main's loop, which computes a frame, at most 12 000 cycles,
+/// and writes a piece of a line. If the EEPROM becomes ready just before an iteration in one simulator and
+/// just after the start of this iteration in the other, the other notices it one iteration later.
 const TURN: u64 = 20_000;
 
 /// Runs avr8js on the bytes that the bench has received, and compares pulses, console and EEPROM.
@@ -130,7 +130,8 @@ fn two_simulators_agree_about_saved_settings() {
 fn two_simulators_agree_under_a_saturated_line() {
     let moving = gaits().iter().find(|line| *line != "stand").cloned();
     let moving = moving.unwrap_or_else(|| "stand".into());
-    // No command that moves: bytes of a flood are lost, and each simulator would obey other commands.
+    // No flood contains a command that moves the robot: bytes of a flood are lost, and each simulator might
+    // obey other commands.
     let floods = [
         ("status\n", TimeTolerance::Any),
         ("help\n", TimeTolerance::Any),

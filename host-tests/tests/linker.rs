@@ -1,10 +1,10 @@
-//! The order in which our linker places functions does not change a program.
+//! Tests that a program computes the same after our linker has reordered its functions.
 
 use lizard_host_tests::avr_gcc::{link, object_of_c};
 use lizard_linker::{ROUTINES, Savings, shrink};
 use simulated_uno::{Fidelity, Image, Uno};
 
-/// Links a program unchanged, and after our linker has shrunk it. Returns the savings of each, too.
+/// Links a program unchanged, and after our linker has shrunk it. Returns both images with their savings.
 fn link_both_ways(program: &str) -> [(Image, Savings); 2] {
     let object = object_of_c(program).expect("it compiles");
     let (short, savings) = shrink(&object)
@@ -19,7 +19,7 @@ fn address(image: &Image, name: &str) -> u16 {
     (symbol.expect("the program has it").address - 0x80_0000) as u16
 }
 
-/// A UNO that has run the program to its end.
+/// Returns a UNO that has run the program to its end.
 fn run(image: &Image) -> Uno {
     let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
     uno.run_ms(100);
@@ -31,8 +31,8 @@ fn run(image: &Image) -> Uno {
     uno
 }
 
-/// A C program of functions of 600 bytes, each of which calls the one ten places further on, while a
-/// timer interrupts them.
+/// Returns a C program of twenty functions of 600 bytes, interrupted by a timer. Each of the first ten calls
+/// the function ten places further on. `more` is added in front of `main`.
 fn far_calls(more: &str) -> String {
     let functions: String = (0..20)
         .rev()
@@ -70,7 +70,7 @@ fn far_calls(more: &str) -> String {
     )
 }
 
-/// The result of [`far_calls`].
+/// Returns the result that the program of [`far_calls`] must compute.
 fn far_sum() -> u16 {
     fn f(index: u16, a: u16) -> u16 {
         let a = a.wrapping_mul(33).wrapping_add(index);
@@ -94,8 +94,8 @@ fn functions_in_another_order_compute_the_same_in_fewer_bytes() {
     let [(plain, _), (short, savings)] = link_both_ways(&far_calls(""));
     assert_eq!(result(&plain), far_sum());
     assert_eq!(result(&short), far_sum());
-    // Main cannot be near all ten functions that it calls, but each of these can be near the
-    // one that it calls.
+    // Main cannot be near all ten functions that it calls, but each of these functions can be near its
+    // callee.
     assert!(savings.calls >= 20, "{savings:?}");
     let end = |image: &Image| image.symbol("_etext").expect("it has one").address;
     let saved = end(&plain) as i64 - end(&short) as i64;
@@ -104,8 +104,8 @@ fn functions_in_another_order_compute_the_same_in_fewer_bytes() {
 
 #[test]
 fn functions_stay_in_place_if_one_of_them_falls_through_into_the_next() {
-    // A function without an end, one whose last instruction may be skipped, and one with a
-    // branch of short reach.
+    // The function `upper` has no return, a return that may be skipped, or a branch of short reach to
+    // `lower`.
     for end in ["subi r24, 5", "sbrs r24, 0\\n ret", "rjmp lower"] {
         let more = format!(
             r#"asm(

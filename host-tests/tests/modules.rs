@@ -1,4 +1,5 @@
-//! Modules have no circular dependencies, and rooms of the core use only rooms below them.
+//! Tests of the dependencies between modules: none is circular, and each top-level module of the core uses only
+//! those below it.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -28,17 +29,16 @@ const CRATES: [&str; 18] = [
     "web/wasm-parts",
 ];
 
-/// The rooms of the core, its top-level modules, the top one first. A room may use those below it.
+/// The rooms of the core, which are its top-level modules, the top room first. A room may use the rooms below it.
 const ROOMS: [&str; 6] = ["console", "control", "motion", "guard", "memory", "numbers"];
 
-/// Folders whose `mod.rs` counts as a module of its own, which must not be part of a circle
-/// either.
+/// Folders whose `mod.rs` counts as a module of its own, so that it may not be part of a circle either.
 const WITH_OWN_FILE: [(&str, &str); 2] = [
     ("crates/host", "crate::"),
     ("crates/host", "crate::commands::"),
 ];
 
-/// The modules of a folder that each module uses.
+/// For each module of a folder, the other modules of the folder that it uses.
 type Uses = BTreeMap<String, BTreeSet<String>>;
 
 #[test]
@@ -104,7 +104,7 @@ fn a_use_of_a_module_above_is_read_as_its_path_and_a_roots_own_items_are_found()
     assert_eq!(items(root).collect::<Vec<_>>(), ["run", "KNOWN"]);
 }
 
-/// The modules that use each other in circles: those that remain after repeatedly removing every
+/// Returns the modules that use each other in circles: those that remain after repeatedly removing every
 /// module that uses no other or that no other uses.
 fn in_circles(mut uses: Uses) -> Vec<String> {
     loop {
@@ -123,15 +123,15 @@ fn in_circles(mut uses: Uses) -> Vec<String> {
 
 /// A folder of modules: a crate, or a module with submodules.
 struct Folder {
-    /// The path prefix of its names: `crate::`, or `crate::measures::`.
+    /// The path prefix of the modules' names: `crate::`, or for example `crate::measures::`.
     path: String,
-    /// The file that declares its modules, without comments and tests.
+    /// The text of the file that declares the modules, without comments and tests.
     root: String,
-    /// The folder of its modules.
+    /// The directory that holds the modules' files.
     place: PathBuf,
 }
 
-/// The folders of a crate, the crate itself first.
+/// Returns all folders of modules of a crate, the crate itself first.
 fn folders(source: &Path) -> Vec<Folder> {
     let mut all = vec![Folder {
         path: "crate::".to_owned(),
@@ -215,7 +215,7 @@ impl Folder {
 /// The name of a folder's root file among its modules.
 const ROOT: &str = "(mod.rs)";
 
-/// The names of the functions, types and constants that a text defines.
+/// Returns the names of the functions, types and constants that a text defines.
 fn items(text: &str) -> impl Iterator<Item = &str> {
     const KINDS: [&str; 6] = ["fn ", "struct ", "enum ", "trait ", "type ", "const "];
     text.lines().filter_map(|line| {
@@ -226,7 +226,8 @@ fn items(text: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// Replaces every `super::` in the text of a file by the path of the module above it.
+/// Replaces every `super::` in the text of a file by the path of the module that it denotes. `above` is the path
+/// of the module above the file.
 fn resolve_super(text: &str, above: &str) -> String {
     let mut text = text.to_owned();
     let parts: Vec<&str> = above.split_inclusive("::").collect();
@@ -239,7 +240,7 @@ fn resolve_super(text: &str, above: &str) -> String {
     text
 }
 
-/// The module that a line of a folder's root file declares.
+/// Returns the name of the module that a line of a folder's root file declares; `None` for another line.
 fn module(line: &str) -> Option<&str> {
     let line = line
         .trim_start_matches("pub(crate) ")
@@ -247,7 +248,7 @@ fn module(line: &str) -> Option<&str> {
     line.strip_prefix("mod ")?.strip_suffix(';')
 }
 
-/// The names that follow each occurrence of a path such as `crate::`: a single one, or those in braces.
+/// Returns the names that follow each occurrence of a path such as `crate::`: a single name, or the names in braces.
 fn names_after<'a>(text: &'a str, path: &str) -> BTreeSet<&'a str> {
     let after = text.split(path).skip(1);
     after
@@ -263,8 +264,8 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(apart).filter(|word| !word.is_empty())
 }
 
-/// Reads a file without its comments and without the code that is compiled only for tests. A missing
-/// file is empty.
+/// Reads a file without its comments and without the code that is compiled only for tests. Returns an empty
+/// string if the file is missing.
 fn read(path: &Path) -> String {
     let text = fs::read_to_string(path).unwrap_or_default();
     let text = match text.split_once("#[cfg(test)]\nmod tests {") {
@@ -280,7 +281,7 @@ fn read(path: &Path) -> String {
     indices.map(|i| format!("{}\n", lines[i])).collect()
 }
 
-/// The Rust files of a module's folder and of the folders in it, except for its tests.
+/// Returns the files of a module's folder and of the folders in it, except for its tests.
 fn files(folder: &Path) -> Vec<PathBuf> {
     let Ok(entries) = fs::read_dir(folder) else {
         return Vec::new();

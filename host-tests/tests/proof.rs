@@ -1,5 +1,5 @@
-//! The guard of every robot of this repository against floating point and against the robot's maps
-//! of cells, at one in 256 of all pairs of servo positions. `make prove` checks all pairs.
+//! Tests that compare the guard of every robot of this repository with floating point and with the robot's
+//! maps of cells, at one in 256 of all pairs of servo positions. `make prove` checks all pairs.
 
 use std::path::PathBuf;
 
@@ -9,7 +9,7 @@ use lizard_robot::Robot;
 
 const ONE_IN: u32 = 256;
 
-/// robot.toml, or the robot that the firmware was built for, and every file of robots/.
+/// Returns the file of the robot that the firmware was built for, by default robot.toml, and every file of robots/.
 fn files() -> Vec<PathBuf> {
     let root = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
     let own = std::env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
@@ -27,7 +27,7 @@ fn files() -> Vec<PathBuf> {
 #[test]
 fn no_pair_of_positions_outside_the_band_or_in_a_cell_is_decided_wrong() {
     for (number, file) in (0..).zip(files()) {
-        // A different share of the pairs for each robot and each seed.
+        // Each robot and each seed gets a different sample of the pairs.
         let share = PairSample {
             one_in: ONE_IN,
             offset: (seed().wrapping_add(number) % u64::from(ONE_IN)) as u32,
@@ -59,7 +59,7 @@ fn a_guard_with_another_robots_lengths_does_not_pass() {
     let text =
         std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../robots/paper.toml"));
     let text = text.expect("the paper's robot is there");
-    // Without the one gait that is unsafe with other couplers.
+    // Leaves out the gaits from `look` on, since `look` is unsafe with the longer couplers.
     let text = text.split("[gait.look]").next().unwrap_or_default();
     let robot = Robot::parse(text).expect("it is right");
     let longer = text

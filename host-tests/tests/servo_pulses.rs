@@ -1,5 +1,5 @@
-//! The crate `servo-pulses` without the lizard: its example moves eight servos during a flood of
-//! serial bytes, measured in the simulated UNO.
+//! Tests of the crate `servo-pulses` without the lizard: on the simulated UNO, its example moves eight servos
+//! during a flood of serial bytes.
 
 use lizard_host_tests::{FirmwareBench, root};
 use servo_pulses::{MIN_WIDTH, frame_cycles, max_width};
@@ -8,8 +8,8 @@ use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin, State, Uno, most_pins_high};
 /// The example's pins, in its order.
 const PINS: [u8; 8] = [2, 3, 7, 8, 9, 12, 14, 19];
 
-/// Width of a servo's pulse in a frame, cycles, as the example describes it: in every frame it rises by
-/// the servo's own step from 1000 us to 2000 us, and falls again in the same way.
+/// Returns the width of a servo's pulse in a frame, cycles, as the example describes it: the width changes by the
+/// servo's own step in every frame, from 1000 us up to 2000 us and back.
 fn width(servo: u64, frame: u64) -> u64 {
     // The example counts the position in 16 bits.
     let position = frame * (16 * servo + 5) % 65_536 % 32_000;
@@ -38,7 +38,7 @@ fn eight_servos_are_exact_to_the_cycle_beside_a_flood_of_echoed_bytes() {
         let servos = edges.iter().filter(|edge| edge.pin != Pin::d(13));
         let servos: Vec<_> = servos.copied().collect();
         assert_eq!(most_pins_high(&servos), 1, "one servo at a time");
-        // The first two or three frames are over.
+        // The first two or three frames are not among the edges.
         let first = uno.pulses(Pin::arduino(PINS[0]))[0].width;
         let skipped = (0..10)
             .find(|n| width(0, *n) == first)
@@ -51,7 +51,7 @@ fn eight_servos_are_exact_to_the_cycle_beside_a_flood_of_echoed_bytes() {
                 assert_eq!(pulse.width, expected, "{fidelity:?}, pin {pin}, frame {n}");
             }
             for pair in pulses.windows(2) {
-                // The first edges, too, are a frame apart, to the cycle.
+                // The rising edges are exactly one frame apart.
                 assert_eq!(
                     pair[1].start - pair[0].start,
                     frame,

@@ -1,12 +1,12 @@
-//! The stack depth computed from machine code, compared with programs of known depth, and with
-//! measured depths.
+//! Tests of the stack depth that is computed from machine code: compared with the known depth of programs,
+//! and with measured depths.
 
 use lizard_host::bench::{StackDepth, StackError};
 use lizard_host_tests::avr_gcc::{assembler, c};
 use lizard_linker::ROUTINES;
 use simulated_uno::{Fidelity, Image, Uno};
 
-/// Sets the stack pointer up as avr-libc does, from r28 and r29.
+/// Code that sets the stack pointer up as avr-libc does, from r28 and r29.
 const BEGIN: &str = "
         ldi r28, 0xff $ ldi r29, 0x08
         out SPH, r29 $ out SPL, r28";
@@ -19,7 +19,7 @@ fn refusal(image: &Image) -> StackError {
     StackDepth::of(image).expect_err("it must be refused")
 }
 
-/// The depth that the stack reaches in a hundredth of a second.
+/// Runs a program for 10 ms and returns the depth that its stack reaches.
 fn measure_depth(image: &Image) -> u16 {
     let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
     uno.run_ms(10);
@@ -231,8 +231,8 @@ fn shared_beginnings_and_ends_count_what_they_save_and_make_room_for() {
         leaf: ret
         {ROUTINES}"
         ));
-        // Two return addresses, the saved registers, the room, and below it a third
-        // return address for a moment.
+        // On the stack are the return address of `framed`, the saved registers, the room, and below the room the
+        // return address of `leaf`.
         assert_eq!(depth(&image).worst(), 2 + saved + room + 2, "{first}");
         assert_eq!(measure_depth(&image), 2 + saved + room + 2, "{first}");
     }

@@ -1,4 +1,4 @@
-//! Trouble at random moments of all activities: a hundredth of `make trouble`.
+//! Tests with trouble at random moments of all activities: a hundredth of the scenarios of `make trouble`.
 
 use std::collections::BTreeSet;
 use std::thread;
@@ -7,7 +7,7 @@ use lizard_host_tests::trouble::{Activity, Scenario, campaign, play};
 use lizard_host_tests::{FirmwareBench, patrol_of, patrolling, root, seed};
 use lizard_robot::Robot;
 
-/// Number of scenarios: four of thirteen are drives, and each other activity has one.
+/// Number of scenarios. Of thirteen scenarios, four are drives, and each other activity has one.
 const COUNT: u64 = 156;
 
 #[test]

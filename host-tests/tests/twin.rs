@@ -1,4 +1,4 @@
-//! The image walks: from power-on to the position of the body on the floor.
+//! Test of the running image by the digital twin: from power-on to the position of the body on the floor.
 
 use lizard_host::sim::frame::servo_pins;
 use lizard_host::sim::script::{Script, Step};
@@ -11,7 +11,7 @@ use lizard_host_tests::{FirmwareBench, robot};
 use lizard_twin::ServoModel;
 use simulated_uno::{Fidelity, Uno};
 
-/// Walks every gait that moves for three cycles, each after a second at its first pose.
+/// Walks every gait that moves for three cycles and one more second, in which the robot moves to its first pose.
 fn walk_all(model: ServoModel) -> Replay {
     let mut ms = 1000;
     let mut steps = Vec::new();

@@ -10,7 +10,7 @@ use avr_device::atmega328p::EEPROM;
 use avr_device::interrupt;
 use lizard_core::memory::record::Memory;
 
-/// EECR as `sbi` numbers it, and two of its bits.
+/// I/O address of EECR for `sbi`, and two of its bits.
 const EECR: u8 = 0x1f;
 const EEMPE: u8 = 2;
 const EEPE: u8 = 1;
@@ -21,11 +21,11 @@ pub struct Eeprom {
 }
 
 impl Eeprom {
-    /// Waits until a write that a reset has left in progress has ended, at most 3.4 ms: nothing can
-    /// be read before.
+    /// Takes the EEPROM's registers. First waits, at most 3.4 ms, for the end of a write that was in progress
+    /// at a reset, since nothing can be read before.
     pub fn new(registers: EEPROM) -> Self {
         while registers.eecr.read().eepe().bit_is_set() {}
-        // Erase and write in one operation, without an interrupt; the boot loader may have
+        // Selects erase and write in one operation, and no interrupt. The boot loader may have
         // left another mode.
         registers.eecr.reset();
         Self { registers }

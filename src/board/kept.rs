@@ -1,5 +1,5 @@
-//! The bytes of RAM that the start-up code does not clear; [`lizard_core::memory::kept`]
-//! defines what is in them.
+//! The bytes of RAM that survive a reset, since the start-up code does not clear them.
+//! [`lizard_core::memory::kept`] defines their contents.
 
 use core::arch::global_asm;
 
@@ -49,10 +49,10 @@ fn cell(index: usize) -> &'static Byte {
 }
 
 /// Returns the cause of the reset and the state from before it, and marks the program as
-/// running. To be called once, with interrupts off, before the watchdog starts.
+/// running. Call it once, with interrupts off, before the watchdog starts.
 pub fn restart(cpu: &CPU) -> Restart {
     let register = cpu.mcusr.read();
-    // Several flags may be set; none is if a boot loader has cleared them.
+    // Several flags may be set; no flag is set if a boot loader has cleared them.
     let reported = if register.porf().bit_is_set() {
         Some(Cause::Power)
     } else if register.wdrf().bit_is_set() {

@@ -1,12 +1,12 @@
 //! The LED on D13, which shows that the board is alive.
 //!
-//! It shares PORTB with servo pins, whose interrupts may change the port
-//! between any two instructions. So it is set by `sbi` and `cbi`, spelled out:
-//! one instruction that touches one bit.
+//! D13 shares PORTB with servo pins, whose interrupts may change the port
+//! between any two instructions. So `sbi` and `cbi` in inline assembly set D13:
+//! each is one instruction that changes only one bit.
 
 use core::arch::asm;
 
-/// PORTB and DDRB as `sbi` numbers them, and the bit of D13.
+/// I/O addresses of PORTB and DDRB for `sbi`, and the bit of D13.
 const PORTB: u8 = 0x05;
 const DDRB: u8 = 0x04;
 const BIT: u8 = 5;

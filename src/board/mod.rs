@@ -1,4 +1,4 @@
-//! The board: the only code that knows registers, pins and interrupts.
+//! The Arduino UNO board: the only code that knows registers, pins and interrupts.
 //!
 //! An Arduino UNO has one processor for everything, and the servos react to every cycle
 //! by which an edge is late. So the interrupts do as little as the hardware allows and
@@ -50,7 +50,7 @@ pub struct Uno {
 
 impl Uno {
     /// Starts the serial port, the LED, the clock and, once widths are submitted,
-    /// the pulses; then enables interrupts. To be called once, at the start of main.
+    /// the pulses; then enables interrupts. Call it once, at the start of main.
     ///
     /// The first tick comes 4 ms later. All servo pins are low until the first
     /// [`Board::submit`].

@@ -1,9 +1,9 @@
 //! The four servos' pulses and the 50 Hz clock: the engine of `servo-pulses`, whose pins
 //! are known once the robot's section has been read.
 //!
-//! The crate's documentation explains how they are exact to the cycle, and the rules for
-//! all other interrupts. With four servos a slot is 4 ms and a frame 20 ms; main has 3.9 ms
-//! for a frame.
+//! The documentation of `servo-pulses` explains how the pulses are exact to the cycle, and gives the
+//! rules for all other interrupts. With four servos, a slot is 4 ms and a frame 20 ms; main has 3.9 ms
+//! to compute a frame.
 
 use servo_pulses::Pin;
 

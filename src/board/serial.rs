@@ -1,9 +1,9 @@
 //! The serial line, 8N1, buffered both ways by interrupts.
 //!
-//! At 115200 baud a byte takes 1389 cycles on the line and the receiver holds two, while main may be
-//! busy with a frame for 12 000 cycles. So each direction has a ring. One side moves only
-//! the head, the other only the tail; both are single bytes, so neither side has to lock
-//! the other out. The handlers are short, because the servos' edges may have to wait for
+//! At 115200 baud a byte takes 1389 cycles on the line and the receiver holds two bytes, while main may be
+//! busy with a frame for 12 000 cycles. So each direction has a ring buffer between main and an interrupt
+//! handler. One of the two moves only the head, the other only the tail; head and tail are single bytes, so
+//! neither has to lock the other out. The handlers are short, because an edge of a servo may have to wait for
 //! one of them.
 
 use core::convert::Infallible;
@@ -16,25 +16,25 @@ use ufmt::uWrite;
 
 use servo_pulses::cells::{Byte, Counter};
 
-/// Size of the receive ring, a complete line: main may be busy for 64 bytes, 89 000 cycles, seven
-/// times the limit of a frame.
+/// Size of the receive ring, which holds a complete line: main may be busy for the time of 64 bytes, 89 000
+/// cycles, seven times the limit of a frame.
 const RECEIVE: usize = 64;
 
 /// Size of the send ring: the longest line of the console fits, and arithmetic modulo 256 is the cheapest.
 const SEND: usize = 256;
 
-/// Bytes that the send ring takes when it is empty.
+/// Number of bytes that the send ring holds.
 pub const ROOM: u8 = Ring::<SEND>::CAPACITY;
 
-/// The value of UBRR0 for the nearest possible rate: 16 MHz / 8 / (16 + 1) = 117 647 baud,
+/// Returns the value of UBRR0 for the nearest possible rate: 16 MHz / 8 / (16 + 1) = 117 647 baud,
 /// 2.1 % fast, which the boot loader uses too; 57 143, 0.8 % slow; 38 462 and 9615, 0.2 % fast.
 const fn divisor(rate: Rate) -> u16 {
     let (clock_by_8, baud) = (16_000_000 / 8, rate.baud());
     ((clock_by_8 + baud / 2) / baud - 1) as u16
 }
 
-/// A ring of bytes between main and a handler. The side that puts bytes moves `head`, the side that
-/// takes them `tail`; both count freely modulo 256.
+/// A ring buffer of bytes between main and a handler. The side that puts bytes moves `head`, the side that
+/// takes bytes moves `tail`; both count freely modulo 256.
 struct Ring<const N: usize> {
     bytes: [Byte; N],
     head: Byte,
@@ -47,7 +47,7 @@ impl<const N: usize> Ring<N> {
         (N - 1) as u8
     };
 
-    /// A ring of 256 holds 255, because 256 would look empty.
+    /// Number of bytes that the ring holds. A ring of 256 holds 255, because with 256 it would look empty.
     const CAPACITY: u8 = if N == 256 { 255 } else { N as u8 };
 
     const fn new() -> Self {
@@ -58,7 +58,7 @@ impl<const N: usize> Ring<N> {
         }
     }
 
-    /// The number of bytes that there is room for.
+    /// Returns the number of bytes that there is room for.
     fn room(&self) -> u8 {
         Self::CAPACITY - self.head.get().wrapping_sub(self.tail.get())
     }
@@ -71,7 +71,7 @@ impl<const N: usize> Ring<N> {
     fn put(&self, byte: u8) {
         let head = self.head.get();
         self.bytes[usize::from(head & Self::MASK)].set(byte);
-        // The byte before the head: the other side looks at the head first.
+        // The byte is stored before the head moves, because that makes it visible to the other side.
         self.head.set(head.wrapping_add(1));
     }
 
@@ -91,10 +91,10 @@ static RECEIVED: Ring<RECEIVE> = Ring::new();
 static TO_SEND: Ring<SEND> = Ring::new();
 static LOST: Counter = Counter::new();
 
-/// Sets up the port. To be called once, with interrupts off.
+/// Sets up the port. Call it once, with interrupts off.
 pub fn start(usart: USART0, rate: Rate) {
-    // Double speed before the divisor: stock simavr takes the baud rate at the
-    // moment the divisor is written.
+    // Double speed is set before the divisor, because stock simavr computes the
+    // baud rate when the divisor is written.
     usart.ucsr0a.write(|w| w.u2x0().set_bit());
     set_rate(rate);
     usart.ucsr0c.write(|w| {
@@ -138,19 +138,19 @@ pub fn is_sending() -> bool {
     !TO_SEND.is_empty()
 }
 
-/// The number of bytes that [`Writer`] takes now without waiting, at most 255.
+/// Returns the number of bytes that [`Writer`] takes now without waiting, at most 255.
 pub fn room() -> u8 {
     TO_SEND.room()
 }
 
-/// The number of received bytes that were garbled, or lost because the ring was full or the receiver
-/// overran. An overrun counts once, even if it lost more than one byte. Stays at 65535.
+/// Returns the number of received bytes that were garbled, or lost because the ring was full or the
+/// receiver overran. An overrun counts once, even if it lost more than one byte. The count stops at 65535.
 pub fn lost() -> u16 {
     LOST.read()
 }
 
-/// A writer of text to the serial line. Main checks [`room`] before it writes; a byte without room
-/// waits until the line has taken another, 1389 cycles at most.
+/// A writer of text to the serial line. Main checks [`room`] before it writes; if there is no room, a byte
+/// waits until another is sent: at 115200 baud, 1389 cycles at most.
 pub struct Writer;
 
 impl uWrite for Writer {
@@ -161,8 +161,8 @@ impl uWrite for Writer {
         Ok(())
     }
 
-    // The robot prints ASCII. Encoding other characters, as the trait does, would take as
-    // long as all else that a character needs.
+    // The robot prints only ASCII. The trait's UTF-8 encoding would double the time that a
+    // character takes.
     #[inline(always)]
     fn write_char(&mut self, character: char) -> Result<(), Infallible> {
         send(character as u8);
@@ -181,8 +181,8 @@ fn send(byte: u8) {
 }
 
 /// Switches on the receiver, the transmitter and the receive interrupt, and the transmit
-/// interrupt if there is something to send. One store, never a read and a write, so that
-/// main and a handler cannot undo each other's change.
+/// interrupt if there is something to send. This is one store, not a read and a write, so
+/// that main and a handler cannot undo each other's change.
 #[inline(always)]
 fn enable_interrupts(usart: &RegisterBlock, has_output: bool) {
     usart.ucsr0b.write(|w| {

@@ -1,18 +1,18 @@
 //! The stack's guard: a word at the end of the data that the stack must not reach.
 //!
 //! The stack grows down from the end of RAM towards the data, and nothing in the chip
-//! stops it there. `make bench` computes how deep it can get. The word between the two is
-//! for unforeseen cases; it is checked in every frame.
+//! stops it there. `make bench` computes how deep it can get. The guard word between stack and
+//! data is for unforeseen cases; main checks it in every frame.
 
 use core::arch::global_asm;
 
 use servo_pulses::cells::Byte;
 
-/// A pattern that the stack rarely contains by accident.
+/// The guard word, a pattern that the stack rarely contains by accident.
 const GUARD: [u8; 4] = [0xde, 0x5a, 0xc3, 0x17];
 
-// The end of the data: this section comes after all others. The start-up code does
-// not clear it, and the image has no bytes for it.
+// This section is placed after all others, at the end of the data. The start-up code
+// does not clear it, and the image has no bytes for it.
 global_asm!(
     ".pushsection .noinit.zz_guard,\"aw\",@nobits",
     ".global lizard_stack_guard",
@@ -32,9 +32,9 @@ fn word() -> &'static [Byte; 4] {
     unsafe { &WORD }
 }
 
-/// Writes the guard word. To be called once.
+/// Writes the guard word. Call it once.
 pub fn start() {
-    // Byte by byte: the loop over both arrays takes four times as much flash.
+    // Written byte by byte, since a loop over both arrays takes four times as much flash.
     let [a, b, c, d] = word();
     a.set(GUARD[0]);
     b.set(GUARD[1]);

@@ -1,24 +1,24 @@
-//! The supplies, measured by the analogue converter.
+//! The supply voltages, measured by the analogue converter.
 //!
 //! The converter compares a voltage with its own supply, AVcc. So its reading of the
 //! chip's 1.1 V reference gives AVcc, without any external part. A conversion takes 104
 //! us, and the reference needs 70 us after it is selected (data sheet, sections 24.6 and
-//! 28.8). So the channel is selected in one frame, the conversion is started in the next,
-//! and it is read in the one after that.
+//! 28.8). So the channel is selected in one frame, the conversion is started in the next frame,
+//! and its result is read in the frame after that.
 
 use avr_device::atmega328p::ADC;
 use lizard_core::control::supply::Reading;
 
-/// The value of ADMUX for AVcc as the reference, to which the channel is added.
+/// ADMUX bits that select AVcc as the converter's reference; the channel is added to them.
 const AVCC: u8 = 0x40;
 
-/// The channel of the chip's reference.
+/// The channel that measures the chip's 1.1 V reference.
 const REFERENCE: u8 = 0x0e;
 
 /// The Arduino number of the first analogue pin, A0.
 const A0: u8 = 14;
 
-/// The value of ADCSRA: on, at 16 MHz / 128 = 125 kHz, since ten bits need 50 to 200 kHz.
+/// ADCSRA value that switches the converter on, at 16 MHz / 128 = 125 kHz, since ten bits need 50 to 200 kHz.
 const ON: u8 = 0x87;
 const START: u8 = 0x40;
 
@@ -51,13 +51,13 @@ impl Converter {
         }
     }
 
-    /// Measures the rail at this pin, by its Arduino number, from now on.
+    /// Measures the rail at this pin, by its Arduino number, from now on; with `None`, measures no rail.
     pub fn connect(&mut self, pin: Option<u8>) {
         self.channel = pin.map(|pin| pin.wrapping_sub(A0) & 7);
     }
 
-    /// Returns the last complete reading, or an empty one, and begins the next part of a
-    /// measurement. To be called once a frame.
+    /// Begins the next part of a measurement, and returns the latest values, or an empty reading
+    /// until every voltage has been measured. Call it once per frame.
     pub fn next(&mut self) -> Reading {
         if self.is_selected {
             self.is_selected = false;

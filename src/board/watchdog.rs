@@ -1,21 +1,21 @@
 //! The watchdog: restarts the program when it hangs.
 //!
-//! It has its own clock of 128 kHz. If it is not fed for 125 ms, it interrupts the
+//! The watchdog has its own clock of 128 kHz. If it is not fed for 125 ms, it interrupts the
 //! program; after 125 ms more it resets the chip (data sheet, section 11.8). The
-//! interrupt marks in RAM that the program hung, lets no further pulse begin, and
+//! interrupt handler marks in RAM that the program hung, lets no further pulse begin, and
 //! never returns: a program that has hung is not trusted again, even if it could
-//! continue. Meanwhile the pulses' own interrupts run, so the reset does not cut a pulse
-//! short, and the restarted program knows the cause.
+//! continue. Meanwhile the interrupts of the pulses run on, so the reset does not cut a pulse
+//! short. The mark tells the restarted program the cause.
 //!
-//! It is fed only when the pulses have taken over the previous frame: then main, the clock
-//! that woke it and both handlers of the pulses are alive.
+//! The watchdog is fed only if the pulse handlers have taken over the previous frame: then main,
+//! the clock that woke it and both pulse handlers are alive.
 
 use core::arch::asm;
 
 use super::{kept, pulses};
 
-/// WDTCSR and its values: CHANGE permits a change within four cycles; GUARD selects an
-/// interrupt after 125 ms and a reset after 125 ms more.
+/// Address of WDTCSR, and two values for it: `CHANGE` permits a change within four cycles;
+/// `GUARD` selects an interrupt after 125 ms and a reset after 125 ms more.
 const WDTCSR: u8 = 0x60;
 const CHANGE: u8 = 0x18;
 const GUARD: u8 = 0x4b;

@@ -1,15 +1,21 @@
-// The page's address holds a room and a robot, after the #, where no server sees them. So a link or a bookmark keeps
+// The page's address names a room and a robot after the #, which no server sees. So a link or a bookmark keeps
 // a robot.
 import { pack } from './link-text';
 import type { Session } from './session';
 
-/** Changes closer together than this are written as one, ms: browsers refuse an address that changes too often. */
+/**
+ * Time without a further change after which the address is written, ms: browsers refuse an address that changes too
+ * often.
+ */
 const QUIET = 300;
 
-/** The parts after the # of an address: `room`, and a robot as `file` or as `robot`, its compressed text. */
+/** Returns the parts after the # of an address: `room`, and a robot as `file` or as `robot`, its compressed text. */
 export const partsOf = (hash: string) => new URLSearchParams(hash.slice(1));
 
-/** State of the entries of the browser's history that the page wrote: they name a room, and the robot of that time. */
+/**
+ * The `state` of the browser history's entries that the page wrote; such an entry names a room and the robot of that
+ * time.
+ */
 export const OWN = 'own';
 
 export class Address {
@@ -19,7 +25,7 @@ export class Address {
 
   constructor(
     private readonly session: () => Session,
-    /** The file that the page starts with if the address names none. */
+    /** The name of the robot's file with which the page starts if the address names none. */
     private readonly first: string,
   ) {}
 
@@ -29,7 +35,7 @@ export class Address {
     this.follow();
   }
 
-  /** Schedules the address of a changed robot. */
+  /** Schedules an update of the address for a changed robot. */
   follow(): void {
     if (!this.isRead) return;
     clearTimeout(this.timer);

@@ -1,10 +1,10 @@
 // Runs the simulation in real time, or slower where the page cannot keep up.
 
-/** The most time that a hidden or slow page makes up for, ms. */
+/** Longest simulated time per picture, ms: what a hidden or slow page misses beyond this is skipped. */
 const MOST = 100;
 /** Slice of simulated time, ms; promises are settled between two slices. */
 const PART = 4;
-/** CPU time that the simulation may take of a picture's time, ms; beyond it, it falls behind real time. */
+/** CPU time that the simulation may take for a picture, ms; if it needs more, it falls behind real time. */
 const BUDGET = 30;
 
 export function run(advance: (ms: number) => void, draw: () => void): void {

@@ -13,7 +13,10 @@ export class Companion {
     private readonly volts: number,
   ) {}
 
-  /** Creates a companion that stands at the start, with the mass and the floor of the page's robot. Throws an error for the user. */
+  /**
+   * Creates a companion that stands at the start, on the given floor, with the given servos. Throws an error for the
+   * user.
+   */
   static create(toml: string, floor: Floor, servos: string, volts: number): Companion {
     const robot = new Robot();
     const read = robot.read(toml);
@@ -28,12 +31,12 @@ export class Companion {
     return companion;
   }
 
-  /** Ends it; its last frame stays. */
+  /** Frees the companion's robot; the last frame stays. */
   end(): void {
     this.robot.free();
   }
 
-  /** Sends a line with the next frame. */
+  /** Queues a line, which the robot receives with the next frame. */
   send(line: string): void {
     this.line += `${line}\n`;
   }

@@ -14,19 +14,19 @@ const json = async <T>(path: string): Promise<T> => (await get(path)).json() as 
 const compiled = async (path: string): Promise<WebAssembly.Module> => WebAssembly.compile(await (await get(path)).arrayBuffer());
 
 export const files = {
-  /** The names of the robots' files, without extension: all, and those that are meant for tests. */
+  /** The names of the robots' files, without extension: of all robots, and of those that are meant for tests. */
   robots: (): Promise<{ all: string[]; tests: string[] }> => json('files/robots.json'),
   toml: (name: string): Promise<string> => text(`files/${name}.toml`),
-  /** The predictions of a robot's gaits; null where they are not there, since the page can make them, too. */
+  /** The predictions of a robot's gaits; null if the file is missing, since the page can compute them, too. */
   predictions: (name: string): Promise<Predictions | null> => json<Predictions>(`files/${name}.predictions.json`).catch(() => null),
-  /** The firmware without a robot, as a HEX file. */
+  /** The firmware without a robot, as a HEX file's text. */
   code: (): Promise<string> => text('files/code.hex'),
   bootLoader: (): Promise<string> => text('files/optiboot.hex'),
   wasm: (): Promise<WebAssembly.Module> => compiled('files/lizard.wasm'),
-  /** The same with the search for a faster gait; loaded on demand. */
+  /** The module of the robot with the search for a faster gait; loaded on demand. */
   tune: (): Promise<WebAssembly.Module> => compiled('files/tune.wasm'),
-  /** The parts; loaded when their panel is opened. */
+  /** The module of the robot's parts; loaded when their panel is opened. */
   parts: (): Promise<WebAssembly.Module> => compiled('files/parts.wasm'),
-  /** Tags, paths and reports of films; loaded when a camera, a film or the sheet is asked for. */
+  /** The module that measures films; loaded when a camera, a film or the sheet of tags is asked for. */
   measure: (): Promise<WebAssembly.Module> => compiled('files/measure.wasm'),
 };

@@ -1,11 +1,12 @@
-// A worker whose functions the page calls. What takes tenths of a second is computed in one, since the page has 16 ms for a picture.
+// A web worker whose functions the page calls. Computations of tenths of a second run in a worker, since the page has
+// 16 ms for a picture.
 import { type Remote, wrap } from 'comlink';
 
 export class Helper<Functions> {
   private readonly functions: Remote<Functions>;
-  /** The reason why the worker cannot be loaded. */
+  /** The reason why the worker cannot be loaded; null while no failure is known. */
   private trouble: Error | null = null;
-  /** Those who wait for an answer, by the functions that tell them of a failure. */
+  /** The reject functions of the calls that wait for an answer. */
   private readonly waiting = new Set<(error: Error) => void>();
 
   constructor(private readonly worker: Worker) {
@@ -16,7 +17,10 @@ export class Helper<Functions> {
     });
   }
 
-  /** Calls a function. Fails with what it throws, or if the worker cannot be loaded. */
+  /**
+   * Calls a function of the worker. Rejects with the error that the function throws, or if the worker cannot be
+   * loaded.
+   */
   async ask<Answer>(call: (functions: Remote<Functions>) => Promise<Answer>): Promise<Answer> {
     if (this.trouble) throw this.trouble;
     let failed: (error: Error) => void = () => {};

@@ -9,18 +9,18 @@ export interface SavedChanges {
   original: string;
   /** The robot.toml with its changes. */
   toml: string;
-  /** Floor, mass, feet and drive as set in the page; null for those of robot.toml. */
+  /** Floor, mass, feet and leg drive as set in the page; null for the values of robot.toml. */
   floor: Floor | null;
   servos: string;
   volts: number;
 }
 
-/** The prefix of the keys: pages at other addresses of the same server have their own. */
+/** The prefix of the storage keys; it differs for pages at other addresses of the same server. */
 const KEY = `lizard ${location.pathname}`;
 const ASIDE = `${KEY} aside`;
 const GAIT = `${KEY} gait`;
 
-/** Robots that are put aside, at most; an older one is dropped. */
+/** Largest number of robots that are put aside; older ones are dropped. */
 const MOST_ASIDE = 8;
 
 function store(key: string, value: unknown): void {
@@ -31,7 +31,7 @@ function store(key: string, value: unknown): void {
   }
 }
 
-/** Returns what is stored, where it can be used. */
+/** Returns the stored robots that this version of the page can use; none if the text is damaged. */
 function stored(key: string): SavedChanges[] {
   try {
     const states = [JSON.parse(localStorage.getItem(key) ?? '[]')].flat() as (SavedChanges | null)[];
@@ -46,7 +46,7 @@ function stored(key: string): SavedChanges[] {
   }
 }
 
-/** True if a stored value is a gait; its numbers are checked as a robot's are. */
+/** True if a stored value has the fields of a gait; the ranges of its numbers are checked with the robot. */
 function isGait(value: unknown): value is Bars {
   const { name, held, period, duty, amplitude, start, gain } = (value ?? {}) as Partial<Bars>;
   const numbers = [period, duty, amplitude, ...(start ?? []), ...(gain ?? [])];
@@ -60,7 +60,7 @@ export const kept = {
   /** The stored state; null if there is none that can be used. */
   get: (): SavedChanges | null => stored(KEY)[0] ?? null,
 
-  /** Robots that were put aside, the latest first. */
+  /** The robots that were put aside, the latest first. */
   aside: () => stored(ASIDE),
 
   setAside: (robots: SavedChanges[]) => store(ASIDE, robots.slice(0, MOST_ASIDE)),

@@ -1,5 +1,5 @@
-// Questions that arrive faster than they are answered, as while the user drags. Of those that arrive while one is under way,
-// only the last is answered, and answers come in the order of their questions.
+// Questions that arrive faster than they are answered, as while the user drags. Of the questions that arrive while
+// one is being answered, only the last is kept; answers come in the order of their questions.
 
 export class LatestQuestion<Question, Answer> {
   private next: Question | null = null;

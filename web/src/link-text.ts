@@ -16,7 +16,7 @@ async function pipe(bytes: Uint8Array<ArrayBuffer>, stream: CompressionStream | 
   return new Uint8Array(await new Blob(pieces).arrayBuffer());
 }
 
-/** Returns a robot.toml as the part `robot` of an address. */
+/** Compresses a robot.toml to the part `robot` of an address. */
 export async function pack(toml: string): Promise<string> {
   const bytes = await pipe(new TextEncoder().encode(toml), new CompressionStream('deflate-raw'));
   const letters = btoa(String.fromCharCode(...bytes));
@@ -25,8 +25,8 @@ export async function pack(toml: string): Promise<string> {
 }
 
 /**
- * A robot.toml without its comments, which would be most of a link's letters; unchanged where what is left would be another
- * robot, as with a # in a text of several lines.
+ * Returns a robot.toml without its comments, which would be most of a link's letters. Returns it unchanged if the
+ * text without comments would parse to other values, as with a # in a text of several lines.
  */
 async function withoutComments(toml: string): Promise<string> {
   const { parse } = await import('smol-toml');
@@ -34,12 +34,12 @@ async function withoutComments(toml: string): Promise<string> {
   return JSON.stringify(parse(short)) === JSON.stringify(parse(toml)) ? short : toml;
 }
 
-/** A link to this page that opens a robot, short enough for a chat or a QR code. */
+/** Returns a link to this page that opens a robot, without comments, short enough for a chat or a QR code. */
 export async function linkTo(toml: string): Promise<string> {
   return `${location.href.split('#')[0]}#robot=${await pack(await withoutComments(toml))}`;
 }
 
-/** Reads the robot.toml of the part `robot`. Throws an error for the user. */
+/** Reads the robot.toml from the part `robot` of an address. Throws an error for the user. */
 export async function unpack(part: string): Promise<string> {
   try {
     const letters = atob(part.replaceAll('-', '+').replaceAll('_', '/'));

@@ -46,9 +46,9 @@ import { World } from './view/world';
 import { Writer } from './view/writer';
 import { WORDS, unknownWords } from './words';
 
-/** Updates of the numbers per second. */
+/** Number of updates of the shown numbers per second. */
 const TEXTS = 10;
-/** Scope, margins and maps are drawn in every third picture, since painting costs most. */
+/** Number of pictures per drawing of scope, margins and maps, since painting costs most. */
 const PANELS = 3;
 
 declare global {
@@ -100,7 +100,7 @@ async function start(): Promise<void> {
     predictor.ask({ toml, floor, servos, gaits: predicted ? 0 : description.gaits.length, first: Math.max(0, first) });
     routines.predict();
   };
-  // The robot walks slowly when the page opens, unless the system asks for reduced motion.
+  // When the page opens, the robot walks slowly until the user acts, unless the system asks for reduced motion.
   let isOver = matchMedia('(prefers-reduced-motion: reduce)').matches;
   const begin = () => {
     const gait = gaitFor({ ahead: 1, left: 0 }, drive.choices());
@@ -166,7 +166,7 @@ async function start(): Promise<void> {
       margins.setRobot(description);
       maps.setRobot(robot);
       drive.showRobot(description);
-      // A board that stays connected goes on with its gait.
+      // A board that stays connected continues its gait.
       drive.doing(session.gait);
       const strange = unknownWords([...drive.words], description.words);
       if (strange.length > 0) troubles.say('page', `The core does not know these words of the page: ${strange.join(', ')}.`);
@@ -245,7 +245,7 @@ async function start(): Promise<void> {
       element('heard').hidden = !session.isReal;
       scope.link(session.isReal);
       element('where').textContent = `waiting for the ${link.name}`;
-      // The line most likely to come, for the row's height.
+      // Reserves the row's height for the line that most likely follows.
       const { version, name, hash } = session.description;
       element('where').parentElement!.dataset.room = whereOf(link.name, { version, robot: { name, hash } }, hash);
       connect.textContent = session.isReal ? 'Back to the simulation' : 'Connect a board…';
@@ -306,7 +306,7 @@ async function start(): Promise<void> {
     }
   };
   const own = new OwnRobot(now, troubles, (file) => (choice.show(file), choose()), (names) => choice.showOwn(names));
-  /** Loads another robot, which erases none. */
+  /** Loads another robot; the user's changed one is put aside instead of being erased. */
   const replace = async (load: () => Promise<unknown>) => {
     const before = kept.get();
     await load();
@@ -403,7 +403,7 @@ async function start(): Promise<void> {
   );
 }
 
-/** The message that names the board and its robot. */
+/** Returns the message that names the board and its robot. */
 function whereOf(name: string, banner: BoardBanner, hash: string): string {
   if (banner === null) return `on a ${name} without this firmware`;
   if (banner === 'unknown') return `on a ${name} that has not restarted: press its reset button to see which robot it has`;

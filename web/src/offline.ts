@@ -3,7 +3,10 @@
 // the user says so, never while the robot walks.
 import { messageOf } from './trouble';
 
-/** Stores the page on this machine. Calls `fresh` when a newer page is ready, with the function that loads it. */
+/**
+ * Stores the page on this machine. Calls `fresh` when a newer page is ready, with a function that loads the newer
+ * page.
+ */
 export async function keepOffline(fresh: (take: () => void) => void): Promise<void> {
   // Only over https and on localhost; otherwise the page needs the network.
   if (!import.meta.env.PROD || !('serviceWorker' in navigator)) return;

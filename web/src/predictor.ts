@@ -1,4 +1,5 @@
-// Predicts each gait's displacement: on a phone this takes seconds. Those of the files' own robots come with the page.
+// Predicts each gait's displacement in a worker: on a phone this takes seconds. The predictions for the robots that
+// come with the page are files of the page.
 import type { Helper } from './helper';
 import type { GaitPrediction, OnFloor } from './robot';
 import { robotHelper } from './robot-helper';
@@ -13,7 +14,7 @@ export class Predictor {
     private readonly onPrediction: (gait: number, prediction: GaitPrediction) => void,
   ) {}
 
-  /** Predicts every gait of a robot, from the first one wanted; a newer question ends it. */
+  /** Predicts every gait of a robot, beginning with the gait `first`; a newer call ends it. */
   async ask({ gaits, first, ...of }: OnFloor & { gaits: number; first: number }): Promise<void> {
     const question = ++this.questions;
     for (let n = 0; n < gaits; n++) {

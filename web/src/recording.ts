@@ -12,14 +12,14 @@ export interface RecordedFrame {
   widths: Four<number> | null;
 }
 
-/** Length limit, s, so that a forgotten recording does not fill the memory. */
+/** Longest recording, s, so that a forgotten one does not fill the memory. */
 export const LONGEST = 180;
 const CYCLES_PER_US = 16;
 
 export class Recording {
   readonly moments: RecordedFrame[] = [];
 
-  /** Adds a frame of some seconds; returns true while there is room for more. */
+  /** Adds a frame that lasts `seconds`; returns true while there is room for more. */
   note(frame: Frame, widths: Four<number> | null, doing: string, seconds: number): boolean {
     const last = this.moments[this.moments.length - 1];
     this.moments.push({ time: last ? last.time + seconds : 0, doing, frame, widths });
@@ -30,13 +30,13 @@ export class Recording {
     return this.moments[this.moments.length - 1]?.time ?? 0;
   }
 
-  /** The latest frame at a time, s. */
+  /** Returns the frame that was current at a time, s; null if the recording is empty. */
   frameAt(time: number): RecordedFrame | null {
     const after = this.moments.findIndex((moment) => moment.time > time + 1e-9);
     return this.moments[after < 0 ? this.moments.length - 1 : Math.max(0, after - 1)] ?? null;
   }
 
-  /** One line for each frame; angles and lags in deg, place in mm, pulses in us. */
+  /** Formats the recording as CSV, one line per frame: angles and lags in deg, place in mm, pulses in us. */
   csv(): string {
     const four = (name: (number: number) => string) => [1, 2, 3, 4].map(name);
     const head = [

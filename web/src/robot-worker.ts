@@ -1,13 +1,13 @@
-// The worker of RobotHelper: a robot in WebAssembly of its own.
+// The worker that `robotHelper` starts. It has its own instance of the WebAssembly robot.
 import { expose } from 'comlink';
 
 import { type EditedGait, type Edits, type Four, isRefused, load, type OnFloor, Robot, type Scene } from './robot';
 
 let robot: Robot;
-/** The robot.toml that was read last. */
+/** The robot.toml of the robot that is loaded. */
 let known = '';
 
-/** Reads a robot; returns false if it is refused. */
+/** Loads a robot, its floor and its servos; returns false if the robot is refused. */
 function take({ toml, floor, servos }: OnFloor): boolean {
   if (toml !== known) {
     if (isRefused(robot.read(toml))) return false;
@@ -18,7 +18,7 @@ function take({ toml, floor, servos }: OnFloor): boolean {
   return true;
 }
 
-/** The neutral pose of a robot. */
+/** Loads a robot and returns the scene of its neutral pose; null if the robot is refused. */
 function neutral(toml: string): Scene | null {
   const read = robot.read(toml);
   if (isRefused(read)) return null;
@@ -33,15 +33,16 @@ const functions = {
 
   predict: (of: OnFloor & { gait: number }) => (take(of) ? robot.predict(of.gait) : null),
 
-  /** Tries an edited gait; null for a drawn line without length. */
+  /** Tries an edited gait; null for a refused robot or a drawn line without length. */
   trial: (of: OnFloor & { made: EditedGait }) => (take(of) ? robot.trial(of.made) : null),
 
-  /** The path of one round; null without the routine. */
+  /** The path of one round of a routine; null if the robot is refused or has no such routine. */
   round: (of: OnFloor & { routine: string }) => (take(of) ? robot.round(of.routine) : null),
 
   /**
-   * Tries other lengths, and draws the neutral pose if they are accepted. `isLast` is true for the end of a drag: if refused, what would
-   * do instead is searched. The lengths of `keys`, if there are any, get their range.
+   * Tries other lengths, and draws the neutral pose if they are accepted. `isLast` is true at the end of a drag: if
+   * the lengths are refused then, it searches for lengths that would be accepted. If `keys` is not empty, it also
+   * returns the range of values that all lengths of these keys may have together.
    */
   lengths({ toml, edits, isLast, keys }: { toml: string; edits: Edits; isLast: boolean; keys: string[] }) {
     const tried = Robot.lengths(toml, edits, isLast);

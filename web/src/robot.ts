@@ -14,17 +14,17 @@ export type Length = Description['lengths'][number];
 export type End = DrawnGait['end'];
 /** The values that may be too large in an edited gait. */
 export type Alternative = NoTrial['instead'][number]['what'];
-/** The predictions of a robot's gaits in their order; null for what is no gait. */
+/** The predictions of a robot's gaits in their order; null for a gait that could not be predicted. */
 export type Predictions = (GaitPrediction | null)[];
 
-/** A robot.toml on a floor, with the servos of a name. */
+/** A robot.toml, the floor, and the servo model by its name in the description. */
 export interface OnFloor {
   toml: string;
   floor: Floor;
   servos: string;
 }
 
-/** Makes an instance without a robot. */
+/** Loads the WebAssembly module and makes an instance that has no robot yet. */
 export function load(module: WebAssembly.Module): Robot {
   initSync({ module });
   return new Robot();

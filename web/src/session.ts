@@ -1,5 +1,5 @@
-// The robot that the page shows and the board at the other end of its serial line. Views only read it
-// and ask it to act.
+// The session: the robot that the page shows, and the board at the other end of the serial line. Views only read the
+// session and call its methods.
 import { files } from './files';
 import { type SavedChanges, kept } from './kept';
 import { Deadman } from './link/deadman';
@@ -23,17 +23,17 @@ import { SimulatedBoard } from './uno/board';
 import { type Measured, WalkedPath } from './walked';
 import { DONE, GAITS, WORDS } from './words';
 
-/** Frames of 20 ms between two poses of a board; a radio at 9600 baud carries no more. */
+/** Number of frames of 20 ms from one reported pose of a board to the next; a radio at 9600 baud carries no more. */
 const WATCH = { usb: 2, radio: 10, simulated: 1 };
 /** Time from a reset within which this firmware sends its banner, ms. */
 const GREETS = 2500;
 /**
- * Time within which a board that its port did not reset answers, ms, and how often it is asked: it finds a port's rate by at most
- * five lines, and a radio may lose some.
+ * Time within which a board that was not reset answers, ms, and how often it is asked: the board finds the port's
+ * baud rate after at most five lines, and a radio may lose some.
  */
 const ANSWERS = 500;
 const ASKS = { usb: 5, radio: 12, simulated: 1 };
-/** Time that the answer to `status` may take before it is asked again, ms. */
+/** Time that the answer to `status` may take before `status` is sent again, ms. */
 const STATUS_ANSWERS = 1000;
 /** Time a board gets to stop before the port is closed, ms. */
 const STOPS = 1000;
@@ -42,7 +42,7 @@ const BOOTS = 4000;
 /** The firmware's pace after a reset, percent. */
 const FULL_PACE = 100;
 const FRAME_SECONDS = 0.02;
-/** Longest part of the simulation between two moments of `clock`, ms. */
+/** Longest simulated time between two updates of `clock`, ms. */
 const PART = 5;
 
 /** The fault of a robot that has received nothing for the time of `deadman`. */
@@ -54,7 +54,7 @@ export const BY_CABLE = 'a radio does not reset a board and is too slow for it: 
 export type BoardBanner = Banner | 'unknown' | null;
 
 export interface Listener {
-  /** Called for another robot, or the same with other lengths. */
+  /** Called for another robot, or for the same robot with other values. */
   robot(description: Description): void;
   /** Called for each frame and its duration in seconds. */
   frame(frame: Frame, widths: Four<number> | null, seconds: number): void;
@@ -88,13 +88,13 @@ const isBanner = (banner: BoardBanner | undefined): banner is Banner => typeof b
 
 export class Session {
   description!: Description;
-  /** The name of its file; empty until it is loaded. */
+  /** The name of the robot's file; empty while a file is being loaded. */
   file = '';
   /** The robot.toml of the page's robot. */
   toml = '';
-  /** The unchanged robot.toml of its file. */
+  /** The unchanged robot.toml of the robot's file. */
   original = '';
-  /** The predictions of its gaits, made with the page. */
+  /** The predictions of the gaits in `original`, which come with the page; null if they are missing. */
   private predictions: Predictions | null = null;
   /** The robot's section of flash. */
   section: Uint8Array = new Uint8Array();
@@ -116,16 +116,18 @@ export class Session {
   private drives = 0;
   /** Number of stops so far. */
   private stops = 0;
-  /** The time of the robot's last line, on the page's clock, ms. */
+  /** The time at which the robot's last line arrived, on the page's clock, ms. */
   private lastLineAt = performance.now();
-  /** Banners received: a board that restarts has lost its unsaved settings. */
+  /** Number of banners received: a board that restarts has lost its unsaved settings. */
   banners = 0;
   /** The firmware, which is the same for every robot. */
   private code: Uint8Array | null = null;
   private set: Floor | null = null;
   private bootLoader: string | null = null;
   private readonly path = new WalkedPath();
-  /** Time for which the robot was followed so far, s: simulated, or measured by a board's poses. */
+  /**
+   * Time for which the robot was followed so far, s: simulated time, or the frames of a real board's reported poses.
+   */
   clock = 0;
   private onBanner: () => void = () => {};
   /** The board's firmware and robot; undefined until known. */
@@ -134,7 +136,7 @@ export class Session {
   hasLoader = false;
   /** True while a board on USB sends its poses. */
   private isWatching = false;
-  /** Number of choices so far: a file that arrives after a later choice is dropped. */
+  /** Number of calls of `choose` so far: a file that arrives after a later call is dropped. */
   private choices = 0;
 
   constructor(
@@ -143,8 +145,8 @@ export class Session {
   ) {}
 
   /**
-   * Loads a robot of the files on a new simulated UNO; a board on USB stays connected. Throws an error for the user, and then the
-   * previous robot stays.
+   * Loads a robot by its file name and restarts the simulated UNO with it; a real board stays connected. Throws an
+   * error for the user, and then the previous robot stays.
    */
   async choose(name: string): Promise<void> {
     const choice = ++this.choices;
@@ -176,7 +178,7 @@ export class Session {
     return null;
   }
 
-  /** Restores the changes from before a reload, if the robot's file is still the same; returns true if it did. */
+  /** Restores saved changes if the robot's file is still the same; returns true if they were restored. */
   async recall({ original, toml, floor, servos, volts }: SavedChanges): Promise<boolean> {
     if (original !== this.original) return false;
     this.setServos(servos);
@@ -192,7 +194,7 @@ export class Session {
     if (file !== '') kept.put({ file, original, toml, floor, servos, volts });
   }
 
-  /** Restores the robot of the file. */
+  /** Restores the unchanged robot of the file. */
   async restore(): Promise<void> {
     await this.change(this.original);
   }
@@ -211,7 +213,7 @@ export class Session {
     return null;
   }
 
-  /** Restarts a simulated board with the robot; a real board goes on with its own. */
+  /** Restarts a simulated board with the page's robot; a real board keeps its own robot. */
   private async begin(keepsSaved: boolean): Promise<void> {
     if (!this.isReal) await this.simulate(keepsSaved && this.link instanceof UnoLink ? this.link.board.eeprom : undefined);
     else {
@@ -235,7 +237,7 @@ export class Session {
     return this.boardBanner !== undefined && this.boardBanner !== null;
   }
 
-  /** The firmware and robot at the other end; undefined until known. */
+  /** The board's firmware and robot; undefined until known. */
   get banner(): BoardBanner | undefined {
     return this.boardBanner;
   }
@@ -245,7 +247,7 @@ export class Session {
     return isBanner(this.boardBanner) && this.boardBanner.robot?.hash === this.description.hash;
   }
 
-  /** The board's robot by its banner, where it is not the page's. */
+  /** The board's robot by its banner, if it is not the page's robot; else null. */
   get otherRobot(): { name: string; hash: string } | null {
     return isBanner(this.boardBanner) && !this.hasThisRobot ? this.boardBanner.robot : null;
   }
@@ -260,7 +262,7 @@ export class Session {
     return this.link !== undefined && this.link.kind !== 'simulated';
   }
 
-  /** Starts a simulated UNO with this robot at power-on, with the saved EEPROM of another one. */
+  /** Starts a new simulated UNO with this robot at power-on; `saved` is the EEPROM of the previous one. */
   async simulate(saved?: Uint8Array): Promise<void> {
     this.bootLoader ??= await files.bootLoader();
     const pins = this.description.servos.map(({ pin }) => pin);
@@ -274,7 +276,10 @@ export class Session {
     this.simulated?.setSupply(this.volts);
   }
 
-  /** Takes a board that the user has picked and identifies it; returns true if it is still there. Throws an error for the user. */
+  /**
+   * Connects a board that the user has picked and identifies it; returns true if it is still connected. Throws an
+   * error for the user.
+   */
   async connect(link: Link | null): Promise<boolean> {
     if (!link) return false;
     link.onGone = (why) => {
@@ -301,7 +306,10 @@ export class Session {
     this.listener.trouble('board', `The module is connected, but no robot answers from the ${link.name}: is its TXD on D0, and is the robot switched on?`);
   }
 
-  /** Reports that a radio has lost its board, or continues with it. A robot that walked has stopped by itself meanwhile. */
+  /**
+   * Reports that a radio has lost its board, or continues once it is in reach again. A robot that walked has stopped
+   * by itself meanwhile.
+   */
   private async reach(link: Link, isInReach: boolean): Promise<void> {
     if (this.link !== link) return;
     this.deadman.letGo();
@@ -323,7 +331,7 @@ export class Session {
     return Promise.race([greeted, this.link.wait(GREETS).then(() => false)]);
   }
 
-  /** Returns true if this firmware answers a question: not every port resets its board. */
+  /** Returns true if this firmware answers `status`: not every port resets its board, so there may be no banner. */
   private async replies(): Promise<boolean> {
     const answer = await this.dialogue.ask(WORDS.status, true, ANSWERS).catch(() => null);
     return answer?.ok ?? false;
@@ -375,24 +383,27 @@ export class Session {
   /** True if a line makes the robot walk. */
   private walks(line: string): boolean {
     const [word] = line.split(' ');
-    // A board with another robot may have gaits that this one does not have. A count may follow.
+    // A board with another robot may have gaits that this robot lacks. A count may follow the gait's name.
     const known = this.description.gaits.find(({ command }) => command === line.replace(/ \d+$/, ''));
     return known ? known.moves : !['', '?', GAITS.stand, ...Object.values<string>(WORDS)].includes(word);
   }
 
-  /** Restores the robot's own `deadman` once it does not walk and is not about to. */
+  /** Restores the robot's own `deadman` if the robot neither walks nor is about to walk. */
   private rests(): void {
     if (this.drives === 0 && !this.walksAlone) this.deadman.end();
   }
 
-  /** Stops a robot that may be out of sight, and leaves it to `deadman` if `stop` does not arrive. */
+  /** Stops a robot that may be out of sight; if `stop` does not arrive, `deadman` stops it. */
   letGo(): void {
     if (!this.walksAlone) return;
     this.deadman.letGo();
     void this.ask(WORDS.stop);
   }
 
-  /** Stops a board that is about to be disconnected; returns true if it confirms, or does not have this firmware. */
+  /**
+   * Stops a board that is about to be disconnected; returns true if the board answers, or if no real robot is known
+   * to be there.
+   */
   async stop(): Promise<boolean> {
     if (!this.isReal || !this.boardBanner) return true;
     const { link, dialogue } = this;
@@ -438,7 +449,7 @@ export class Session {
     const word = /^ok (.+)$/.exec(line)?.[1] ?? '';
     const { stop, rest, center, pose, speed } = WORDS;
     const doing = [...this.description.gaits.map(({ command }) => command), ...this.description.routines, stop, rest, center];
-    // A count may follow.
+    // A count may follow the gait's name.
     const command = doing.includes(word) ? word : word.replace(/ \d+$/, '');
     if (doing.includes(command)) this.doing(command);
     else if (word.startsWith(`${pose} `)) this.doing(pose);
@@ -474,7 +485,7 @@ export class Session {
   }
 
   private setPace(percent: number): void {
-    // A cycle at two paces does not count.
+    // A cycle whose pace changes is not measured.
     if (percent !== this.pace) this.path.clear();
     this.pace = percent;
     this.listener.speed(percent);
@@ -487,7 +498,7 @@ export class Session {
     this.listener.doing(gait);
   }
 
-  /** Sends a line and returns its answer; shows an error. */
+  /** Sends a line and returns its answer. Shows an error, unless the line is quiet, and returns null. */
   async ask(line: string, quiet = false, timeout?: number): Promise<Answer | null> {
     if (!quiet) this.mayAsk = true;
     const { deadman } = this;
@@ -503,7 +514,7 @@ export class Session {
         if (stops !== this.stops) return null;
         if (!isSure) throw new Error(`"${line}" was not sent, since the robot has not confirmed that it stops when it hears nothing`);
       }
-      // The robot prints and keeps its own setting.
+      // `cal` must print and `save` must store the robot's own setting, not the page's.
       const isOwn = deadman.isSet && [WORDS.cal, WORDS.save].some((word) => word === command);
       if (isOwn) deadman.end();
       const asked = this.dialogue.ask(line, quiet, timeout);
@@ -529,7 +540,7 @@ export class Session {
     return answer && status(answer.text);
   }
 
-  /** Takes the robot's state at once when its line is read: later it could overwrite a newer one. */
+  /** Takes the robot's state as soon as its line is read: taken later, it could overwrite a newer one. */
   private state(read: Status): void {
     if (read.speed !== null) this.setPace(read.speed);
     this.listener.trouble('fault', read.fault === LINK_FAULT && this.isReal ? 'The robot has stopped by itself: no line had reached it for too long.' : null);
@@ -549,14 +560,14 @@ export class Session {
     await this.link.reset();
   }
 
-  /** Writes an image by the boot loader and starts it. Throws an error for the user. */
+  /** Writes a flash image through the boot loader and starts it. Throws an error for the user. */
   async flash(image: Uint8Array, progress: Progress): Promise<void> {
     await this.write({ at: 0, bytes: image }, progress, null);
   }
 
   /**
-   * Writes the page's robot after the board's firmware and starts it. Throws an error for the user; an `Unfit` if that
-   * firmware is not the page's, and then nothing was written.
+   * Writes the page's robot to its section of flash, after the firmware, and starts it. Throws an error for the user;
+   * an `Unfit` if the board's firmware is not the page's, and then nothing was written.
    */
   async flashRobot(progress: Progress): Promise<void> {
     const { boardBanner, code, section, description } = this;
@@ -589,7 +600,10 @@ export class Session {
     }
   }
 
-  /** Waits for a board that was just written, with the robot of a hash if one is given; returns what is wrong, or null. */
+  /**
+   * Waits for the banner of a board that was just written; `hash` is the expected robot's, or null. Returns what is
+   * wrong, or null.
+   */
   async waitForBanner(hash: string | null): Promise<string | null> {
     const { link } = this;
     const greeted = await this.greeting();
@@ -611,7 +625,7 @@ export class Session {
   advance(ms: number): void {
     try {
       const { simulated } = this;
-      // In parts, so that each of the robot's lines gets its own time, even if a slow machine has much to catch up with.
+      // In parts, so that each line of the robot gets its own time, even if a slow machine has much to catch up.
       for (let left = simulated ? ms : 0; left > 0; left -= PART) {
         const part = Math.min(left, PART);
         this.clock += part / 1000;
@@ -641,29 +655,33 @@ export class Session {
     this.listener.frame(frame, widths, seconds);
   }
 
-  /** Displacement in the last complete cycle of the gait; null before one is complete. */
+  /**
+   * Returns the displacement in the last complete cycle of the gait; null without a moving gait or a complete cycle.
+   */
   measured(): Measured | null {
     const gait = this.description.gaits.find(({ command }) => command === this.gait);
     return gait?.moves ? this.path.measured((gait.period * FULL_PACE) / this.pace) : null;
   }
 
-  /** The predictions that came with the page: for the file's robot with its own floor and servos; null for any other. */
+  /**
+   * The predictions that came with the page; null unless the robot, its floor and its servos are those of the file.
+   */
   get predicted(): Predictions | null {
     return this.toml === this.original && this.set === null && this.servos === 'own' ? this.predictions : null;
   }
 
-  /** Takes the robot back to its start. */
+  /** Puts the robot back to its start on the floor. */
   home(): void {
     this.robot.restart();
     this.path.clear();
   }
 
-  /** Floor, mass and leg drive: as set in the page, or else as in the file. */
+  /** Floor, mass, feet and leg drive: as set in the page, else as in robot.toml. */
   get floor(): Floor {
     return this.set ?? this.description.floor;
   }
 
-  /** Sets floor, mass and leg drive; null restores those of the file. */
+  /** Sets floor, mass, feet and leg drive; null restores the values of robot.toml. */
   setFloor(floor: Floor | null): void {
     this.set = floor;
     this.robot.setFloor(this.floor);

@@ -8,29 +8,36 @@ export interface Banner {
   robot: { name: string; hash: string } | null;
 }
 
-/** Reads a banner; null for any other line, also for that of an old firmware with its robot compiled in. */
+/** Reads a banner; null for any other line, also for the banner of an old firmware that had its robot compiled in. */
 export function banner(line: string): Banner | null {
   const [, version, name, hash] = /^# lizard (\S+) (?:robot (\S+) ([0-9a-f]{8})|without a robot),/.exec(line) ?? [];
   if (version === undefined) return null;
   return { version, robot: name === undefined || hash === undefined ? null : { name, hash } };
 }
 
+/** The answer to `status`. */
 export interface Status {
   gait: string;
   /** Pose, deg; null without a robot in the flash. */
   pose: Four<number> | null;
-  /** Phase of the gait's cycle, 0 to 1; 0 while none is under way. */
+  /** Phase of the gait's cycle, 0 to 1; 0 while no gait runs. */
   phase: number;
   /** Frames since the reset. */
   frames: number;
   /** Smallest margin; null without a robot in the flash. */
   margin: number | null;
+  /** `clear`, or `held` after an unsafe pose. */
   guard: string;
   fault: string;
+  /** Number of late edges of pulses. */
   late: number;
+  /** Number of lost bytes. */
   lost: number;
+  /** Cause of the last start. */
   reset: string;
+  /** Number of resets since power-on. */
   resets: number;
+  /** Voltage of the board, V; null until it is measured. */
   vcc: number | null;
   speed: number | null;
 }

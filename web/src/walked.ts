@@ -1,11 +1,14 @@
-// The robot's path of the last seconds, from which the page measures a cycle.
+// The robot's path in the last seconds, from which the page measures the displacement of a cycle.
 import { type Frame, Robot } from './robot';
 
-/** Seconds of path kept: 3 s at a tenth of the pace. */
+/** Seconds of path that are kept: enough for a cycle of 3 s at a tenth of its pace. */
 const KEPT_SECONDS = 31;
 const FRAME_SECONDS = 0.02;
 
-/** The last cycle: mm forward and left in the frame of its start, turn and largest lag of a leg, deg. */
+/**
+ * The displacement in the last cycle: mm forward and left in the frame of the cycle's start, turn in deg; and the
+ * largest lag, deg.
+ */
 export interface Measured {
   forward: number;
   left: number;
@@ -18,12 +21,12 @@ export class WalkedPath {
   private time = 0;
   private step = FRAME_SECONDS;
 
-  /** Forgets the path: what follows belongs to another gait, pace or robot. */
+  /** Forgets the path, since the following frames belong to another gait, pace or robot. */
   clear(): void {
     this.places = [];
   }
 
-  /** Adds a frame that has taken a time, s. */
+  /** Adds a frame that lasts `seconds`. */
   add(frame: Frame, seconds: number): void {
     this.time += seconds;
     this.step = seconds;
@@ -31,11 +34,11 @@ export class WalkedPath {
     while (this.places[0].time < this.time - KEPT_SECONDS) this.places.shift();
   }
 
-  /** Displacement in the last cycle of a duration, s; null before one is complete. */
+  /** Returns the displacement in the last `cycle` seconds; null if the path is shorter. */
   measured(cycle: number): Measured | null {
     const now = this.places.at(-1);
     if (!now) return null;
-    // The nearest known frame: a board on USB does not send every frame.
+    // The nearest known frame: a real board does not report every frame.
     const from = this.places.findLastIndex(({ time }) => time <= now.time - cycle + this.step / 2);
     if (from < 0) return null;
     const lags = this.places.slice(from + 1).flatMap(({ frame }) => frame.lag.map(Math.abs));

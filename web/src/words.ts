@@ -1,5 +1,5 @@
-// The console's words that the page sends or waits for. The core's list, crates/core/src/console/word.rs, decides
-// how they are written: a page with a word that is not there says so when it begins.
+// The console's words that the page sends or waits for. They must be in the core's list,
+// crates/core/src/console/word.rs: a page with a word that is not in the list reports it when it begins.
 
 export const WORDS = {
   stop: 'stop',
@@ -31,7 +31,7 @@ export const DONE = '# done';
 /** The firmware's line after a reset if nothing was ever saved. */
 export const NOTHING_SAVED = '# calibration: none is saved';
 
-/** Words of the page and of its buttons that are not among the core's. */
+/** Returns the words of the page and of its buttons that are not among the core's words. */
 export function unknownWords(buttons: string[], core: string[]): string[] {
   return [...new Set([...Object.values(WORDS), ...buttons])].filter((word) => !core.includes(word));
 }

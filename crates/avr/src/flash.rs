@@ -1,7 +1,7 @@
 //! Constants that stay in flash.
 //!
 //! An AVR has two address spaces. A Rust `static` lives in the one for data: it is copied
-//! to RAM at start, and this chip has 2 KiB of that. Tables and messages belong in the
+//! to RAM at start, and an ATmega328P has 2 KiB of it. Tables and messages belong in the
 //! other, which only the `lpm` instruction reads. [`flash!`](crate::flash!) puts a
 //! constant there; a [`Flash`] is its address, and the only way to read it. On any other
 //! machine it is an ordinary reference, so the same code runs there, even with tables
@@ -37,11 +37,11 @@ unsafe impl<T: ?Sized + Sync> Sync for Flash<'_, T> {}
 unsafe impl<T: ?Sized + Sync> Send for Flash<'_, T> {}
 
 impl<T: ?Sized> Flash<'_, T> {
-    /// Makes a reference to a constant; only [`flash!`](crate::flash!) calls it.
+    /// Makes a reference to a constant. It is public only for [`flash!`](crate::flash!).
     ///
     /// # Safety
-    /// A value of `T` must be at `at` for the lifetime and never written, aligned or not:
-    /// in the flash of an AVR, and in ordinary memory elsewhere.
+    /// For the whole lifetime a value of `T` must be at `at` and must not be written: in the flash
+    /// of an AVR, and in ordinary memory elsewhere. It need not be aligned.
     #[doc(hidden)]
     pub const unsafe fn new(at: *const T) -> Self {
         Self {
@@ -199,8 +199,8 @@ const fn nonzero(size: usize) -> usize {
     size
 }
 
-/// A type of which any bytes are a valid value, low bytes first and without padding: the same in the flash of
-/// an AVR and in the memory of a host. See [`plain!`](crate::plain!).
+/// A type without padding for which any bytes are a valid value. Its bytes are little-endian, the same in the flash
+/// of an AVR and in the memory of a host. See [`plain!`](crate::plain!).
 ///
 /// # Safety
 /// Every pattern of `size_of::<Self>()` bytes is a value, and no byte is padding.
@@ -227,7 +227,7 @@ unsafe impl Plain for i32 {}
 // SAFETY: an array has no padding between its elements.
 unsafe impl<T: Plain, const N: usize> Plain for [T; N] {}
 
-// The AVR and all hosts in use have the low byte first.
+// The AVR and all hosts in use are little-endian.
 const _: () = assert!(cfg!(target_endian = "little"));
 
 /// Declares a type that can be read from flash: a struct whose fields are such types, in an order that leaves

@@ -8,8 +8,8 @@
 //! else.
 //!
 //! Do not use this crate on an AVR with more than 64 KiB of flash: addresses have 16 bits here. For tables that
-//! are always indexed within their bounds, `avr-progmem` does the same with a richer interface, and needs a
-//! nightly compiler.
+//! are always indexed within their bounds, `avr-progmem` also keeps them in flash; it has a richer interface, and
+//! needs a nightly compiler.
 
 #![no_std]
 #![allow(unsafe_code)] // Access to flash and the multiplier needs it; see flash.rs, multiply.rs.

@@ -12,8 +12,8 @@ pub const fn mul(a: i16, b: i16) -> i32 {
     a as i32 * b as i32
 }
 
-/// Multiplies two 16-bit factors, read as unsigned, into a 32-bit product. Adds four products of bytes, each at
-/// its place; then the `$more` instructions may correct the halves `low` and `high`. Takes half the cycles of
+/// Multiplies two 16-bit factors, read as unsigned, into a 32-bit product. Adds four products of bytes, each shifted
+/// to its position; then the `$more` instructions may correct the halves `low` and `high`. Takes half the cycles of
 /// the compiler's call to a 32 by 32 bit multiplication.
 #[cfg(target_arch = "avr")]
 macro_rules! product {

@@ -7,14 +7,14 @@
 
 use crate::{Flash, Plain};
 
-/// True for a build linked by avr-gcc alone, without tools/linker, whose code is longer. It is
-/// for simulators, so the region may end where the flash does, beyond a UNO's boot loader.
+/// True for a build that avr-gcc links alone. Its code is longer, since tools/linker does not shorten it, so the
+/// region begins later. Such a build is for simulators only, so the region may take the place of a UNO's boot loader.
 const IS_PLAIN: bool = match option_env!("LIZARD_PLAIN_LINK") {
     Some(set) => matches!(set.as_bytes(), b"1"),
     None => false,
 };
 
-/// The region's first address, after 27.5 KiB of code.
+/// The region's first address: before it there is room for 27.5 KiB of code, in a plain build for 29.9 KiB.
 pub const START: u16 = if IS_PLAIN { 0x7780 } else { 0x6e00 };
 
 /// The address after the region: where the boot loader of an Arduino UNO begins, or the flash ends.
@@ -57,7 +57,7 @@ impl<'a> Region<'a> {
         }
     }
 
-    /// The region's first `length` bytes.
+    /// The region's first `length` bytes; all of its bytes if it has fewer.
     pub fn first(self, length: u16) -> Self {
         Self::new(self.bytes.get(..length.into()).unwrap_or(self.bytes))
     }
@@ -69,7 +69,8 @@ impl<'a> Region<'a> {
         Flash::from(self.bytes).read(at.into())
     }
 
-    /// `count` values whose bytes begin at `at`; empty if they are not completely inside.
+    /// `count` values whose bytes begin at `at`; empty if they are not completely inside. Debug builds panic in that
+    /// case, unless the region is empty.
     pub fn values<T: Plain>(self, at: u16, count: u16) -> Flash<'a, [T]> {
         let length = usize::from(count) * size_of::<T>();
         self.assert_has(at, length);
@@ -88,7 +89,7 @@ impl<'a> Region<'a> {
 
 #[cfg(target_arch = "avr")]
 impl<'a> Region<'a> {
-    /// The region of flash that holds the robot's section.
+    /// The region of flash that holds the robot's section; it is not empty on the AVR, in spite of its name.
     pub const EMPTY: Self = Self {
         lifetime: core::marker::PhantomData,
     };
@@ -106,7 +107,7 @@ impl<'a> Region<'a> {
         self
     }
 
-    /// The value whose bytes begin at `at`.
+    /// Reads the value whose bytes begin at `at`, without a check of the bounds.
     #[inline(always)]
     pub fn read<T: Plain>(self, at: u16) -> T {
         let first = core::ptr::with_exposed_provenance(usize::from(START.wrapping_add(at)));
@@ -115,7 +116,7 @@ impl<'a> Region<'a> {
         unsafe { Flash::new(first) }.load()
     }
 
-    /// `count` values whose bytes begin at `at`.
+    /// `count` values whose bytes begin at `at`, without a check of the bounds.
     #[inline(always)]
     pub fn values<T: Plain>(self, at: u16, count: u16) -> Flash<'a, [T]> {
         let first = core::ptr::with_exposed_provenance(usize::from(START.wrapping_add(at)));

@@ -1,9 +1,9 @@
 //! The drive of a leg from its servo's link: `[leg.drive]` in robot.toml.
 //!
 //! Parts, bill, contact model, twin and page all use this table. With a rigid strut, a bar with two holes, the
-//! leg moves exactly with its servo. A strut with a slot and a spring does the same while the load is below the
-//! pull of its spring; beyond that it yields in one direction. In both cases pins and gears have play, within
-//! which nothing drives the leg.
+//! leg moves exactly with its servo. With a strut that has a slot and a spring, the leg moves exactly with its servo
+//! while the load is below the spring's pull; under a larger load the strut yields in one direction. With either
+//! strut, pins and gears have play, within which nothing drives the leg.
 
 use crate::lag_energy::{LagEnergy, Side};
 use crate::strut::Strut;
@@ -22,7 +22,7 @@ pub struct Drive {
 pub enum Kind {
     /// A rigid strut: the leg follows its servo exactly, except for the play.
     Rigid,
-    /// A strut with a slot and a tension spring, which yields one way.
+    /// A strut with a slot and a tension spring, which yields in one direction.
     Strut(Strut),
 }
 
@@ -59,7 +59,7 @@ impl Drive {
         }
     }
 
-    /// Limits a lag (deg) to the range between the stops while the servo is at this sweep, deg.
+    /// Limits a lag (deg) to the range between the stops, with the servo at this sweep, deg.
     pub(crate) fn limit_lag(&self, leg: usize, sweep: f64, lag: f64) -> f64 {
         let stops = self
             .of_leg(leg, sweep, 1.0, 1.0)

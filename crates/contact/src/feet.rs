@@ -9,9 +9,9 @@ pub const GRAVITY: f64 = 9.80665;
 /// The geometry of the feet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Feet {
-    /// The distance of the front hips ahead of the chassis centre, and of the hind ones behind, mm.
+    /// Distance of the front hips ahead of the chassis centre, mm; the hind hips are as far behind it.
     pub hip_forward: f64,
-    /// Distances of the front and of the hind hips to either side, mm.
+    /// Distances of the front and of the hind hips from the chassis's long axis, to either side, mm.
     pub hip_side: [f64; 2],
     /// Outward sweep of the legs at neutral, deg: front legs forward, hind legs
     /// back.
@@ -30,8 +30,8 @@ impl Feet {
         })
     }
 
-    /// Places of the feet for sweeps in deg, servo order: (forward, left) from the chassis
-    /// centre, mm.
+    /// Positions of the feet at these sweeps (deg, servo order): (forward, left) from the
+    /// chassis centre, mm.
     pub fn positions(&self, sweeps: [f64; 4]) -> [Point; 4] {
         let hips = self.hips();
         std::array::from_fn(|i| {
@@ -43,7 +43,7 @@ impl Feet {
         })
     }
 
-    /// Derivatives of the feet's places by the sweep, mm/rad.
+    /// Derivative of each foot's position by its leg's sweep, mm/rad.
     pub(crate) fn sweep_derivatives(&self, sweeps: [f64; 4]) -> [Point; 4] {
         std::array::from_fn(|i| {
             let (sin, cos) = self.direction(i, sweeps[i]);
@@ -56,12 +56,12 @@ impl Feet {
     }
 }
 
-/// The mass on the feet.
+/// The robot's mass and centre of mass, which the feet carry.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Body {
     /// Mass of the whole robot, g.
     pub mass: f64,
-    /// Mass centre: forward, left from the chassis centre, mm.
+    /// Centre of mass: (forward, left) from the chassis centre, mm.
     pub centre: Point,
 }
 

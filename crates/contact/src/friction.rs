@@ -22,7 +22,7 @@ pub(crate) type Twist = [f64; 3];
 
 /// Smallest rounding over the size of the slides.
 const MIN_ROUNDING: f64 = 1e-8;
-/// Stages from the first rounding, the size of the slides, to the last.
+/// Number of the last stage. Stage 0 rounds by the size of the slides, the last one by `MIN_ROUNDING` times that.
 const STAGES: i32 = 5;
 /// The first stage if a guess of the solution is given.
 const FIRST_STAGE_NEAR: i32 = 2;
@@ -41,7 +41,7 @@ const STILL: f64 = 1e-12;
 /// The four pads in a small step.
 #[derive(Clone, Copy)]
 pub(crate) struct Pads {
-    /// Places of the pads in the body frame, mm.
+    /// Positions of the pads in the body frame, mm.
     pub at: [Point; 4],
     /// Swings of the pads in the body frame by their legs, at unchanged lags, mm.
     pub swing: [Point; 4],
@@ -49,9 +49,9 @@ pub(crate) struct Pads {
     pub ratio: f64,
     /// Load of each pad, relative to the mean.
     pub load: [f64; 4],
-    /// Drives of the legs that lag; `None` if legs are rigid.
+    /// Drives of the legs that lag; `None` if all drives are rigid and no motor turns a servo.
     pub compliance: Option<Compliance>,
-    /// Inertia of the body; `None` if time does not count.
+    /// Inertia of body and legs; `None` in a quasi-static step.
     pub body: Option<Inertia>,
 }
 
@@ -68,10 +68,10 @@ pub(crate) struct Inertia {
     pub slides: [Point; 4],
 }
 
-/// The drives of legs that lag behind their servos.
+/// The drives of legs that lag behind their servos, or of servos that lag behind their pulses.
 #[derive(Clone, Copy)]
 pub(crate) struct Compliance {
-    /// Derivatives of the pads' places by the lag, backward, mm/rad.
+    /// Derivatives of the pads' positions by the lag, backward, mm/rad.
     pub lag_derivatives: [Point; 4],
     /// Lags before the step, rad.
     pub before: [f64; 4],
@@ -84,7 +84,7 @@ pub(crate) struct Compliance {
 pub(crate) struct Displacement {
     /// Movement of the body.
     pub twist: Twist,
-    /// Lags of the legs after the step, rad; 0 if legs are rigid.
+    /// Lags after the step, rad: each the sum of the lags of leg and servo; 0 without compliance.
     pub lag: [f64; 4],
     /// Changes of the lags, rad.
     pub change: [f64; 4],
@@ -100,7 +100,7 @@ struct Expansion {
     legs: [Row; 4],
 }
 
-/// A leg's row: slope and curvature by its lag, and the mixed derivatives with the twist.
+/// The derivatives of the cost by a leg's lag: the first, the second, and the mixed ones with the twist.
 #[derive(Clone, Copy, Default)]
 struct Row {
     slope: f64,
@@ -207,8 +207,8 @@ impl Pads {
         }
     }
 
-    /// Largest distance that a leg may move in a step without a swing, mm. Its motor may move it on. Its spring
-    /// pulls it back if it pulls harder than the pad holds, which happens only after a change of pads or
+    /// Largest distance that a pad may move in a step in which no leg swings, mm: a motor may turn its leg, or a
+    /// spring may pull its leg back. A spring pulls harder than the pad holds only after a change of pads or
     /// springs.
     fn free_move(&self) -> f64 {
         let Some(compliance) = &self.compliance else {
@@ -245,7 +245,7 @@ impl Pads {
         })
     }
 
-    /// Weights of a slide's parts: backward slides cost more by the ratio.
+    /// Weights of a slide's components, forward and left: a backward slide costs `ratio` times as much.
     pub fn weight(&self, slide: Point) -> Point {
         [if slide[0] < 0.0 { self.ratio } else { 1.0 }, 1.0]
     }
@@ -338,12 +338,12 @@ impl Scale {
         )
     }
 
-    /// Converts the twist of a displacement to these units.
+    /// Converts the twist of a displacement to scaled unknowns.
     fn of_twist(&self, displacement: &Displacement) -> [f64; 3] {
         std::array::from_fn(|i| displacement.twist[i] / self.twist[i])
     }
 
-    /// Converts the changes of the lags to these units.
+    /// Converts a displacement's changes of the lags to scaled unknowns.
     fn of_lag(&self, displacement: &Displacement) -> [f64; 4] {
         std::array::from_fn(|i| match self.lag[i] {
             0.0 => 0.0,
@@ -353,7 +353,7 @@ impl Scale {
 }
 
 impl Expansion {
-    /// First-order gain of the legs' own steps; that of the twist is not included.
+    /// First-order reduction of the cost by the Newton steps of the lags, without the share of the twist.
     fn predicted_gain(&self) -> f64 {
         let reduction = |leg: &Row| match leg.curvature {
             0.0 => 0.0,
@@ -364,7 +364,7 @@ impl Expansion {
 }
 
 impl Row {
-    /// Step of the leg together with this step of the twist.
+    /// Newton step of the leg's lag that belongs to this step of the twist.
     fn step(&self, twist: [f64; 3]) -> f64 {
         if self.curvature == 0.0 {
             return 0.0;

@@ -22,7 +22,7 @@ pub struct Ground {
     /// Stiffness and lengths of the feet, which decide their loads.
     pub stance: Stance,
     /// Friction coefficient of a pad that slides forward. It has an effect only together with
-    /// a spring.
+    /// springs or motors.
     pub friction: f64,
     /// Friction coefficient of a pad that slides backward, divided by that of one that slides
     /// forward.
@@ -35,8 +35,8 @@ pub struct Ground {
 pub const DEFAULT_FRICTION: f64 = 0.7;
 
 impl Ground {
-    /// Returns the same ground with legs that do not lag, so that no step depends on earlier
-    /// ones.
+    /// Returns this robot and floor with legs that do not lag, so that no step depends on
+    /// earlier ones.
     pub fn rigid(&self) -> Self {
         Self {
             drive: Drive::RIGID,
@@ -44,12 +44,12 @@ impl Ground {
         }
     }
 
-    /// Loads of feet at these places (forward, left in mm, servo order), as shares of the mean.
+    /// Loads of feet at these positions (forward, left in mm, servo order), as shares of the mean.
     pub fn loads(&self, feet: [[f64; 2]; 4]) -> [f64; 4] {
         self.stance.loads(&self.body, feet)
     }
 
-    /// Friction of a foot with the mean load, N: the force against which a spring works.
+    /// Friction of a foot with the mean load, N: the force that a leg's spring or motor has to overcome.
     pub fn grip(&self) -> f64 {
         self.friction * self.body.mean_load()
     }

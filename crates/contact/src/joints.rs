@@ -1,4 +1,4 @@
-//! Dry friction of pins and sliders, which a servo has to overcome besides that of its pad.
+//! Dry friction of pins and sliders, which a servo has to overcome besides the friction of its pad.
 //!
 //! The pins of a servo's leg and crank turn with it, so their friction is one torque at the servo.
 //! A slider joins the arms of two servos: it resists the change of its length, with a lever that
@@ -46,8 +46,8 @@ impl Joints {
         levers
     }
 
-    /// Torques of the sliders on the servos, N mm, at sweeps in deg and rates in rad/s. Below a
-    /// slider speed of `slow` mm/s the friction falls to 0, so that it never turns a servo back.
+    /// Torques of the sliders on the servos, N mm, at sweeps in deg and rates in rad/s. Below a slider
+    /// speed of `slow` mm/s the friction is proportional to the speed, so that it never turns a servo back.
     pub(crate) fn torques(&self, sweeps: [f64; 4], rates: [f64; 4], slow: f64) -> [f64; 4] {
         if self.slider == 0.0 {
             return [0.0; 4];

@@ -13,8 +13,8 @@ use crate::motor_step::{Expansion, MotorStep};
 pub(crate) struct LagEnergy {
     /// Free movement of the leg to either side, rad.
     pub play: f64,
-    /// Torque of a stop, more than that of a pad. Much more would only make the cost harder to
-    /// minimise.
+    /// Torque of a stop, larger than the largest torque of a pad. A much larger one would only make
+    /// the cost harder to minimise.
     pub stop: f64,
     /// Resistance to a lag below 0.
     pub lower: Side,
@@ -43,23 +43,23 @@ pub(crate) enum Side {
     },
 }
 
-/// The stretching of a strut by a leg's lag: the strut is the third side of a triangle, between
-/// the leg's arm and the line from the leg's pivot to the strut's other end.
+/// The stretching of a strut by a leg's lag. The strut is one side of a triangle; the other two are
+/// the leg's arm and the line from the leg's pivot to the strut's joint at the servo.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Stretch {
-    /// Distance from the pivot to the strut's other end, mm.
+    /// Distance from the leg's pivot to the strut's joint at the servo, mm.
     line: f64,
     /// Length of the leg's arm, mm.
     arm: f64,
-    /// Angle between both while the leg does not lag, rad; a lag adds to it.
+    /// Angle between line and arm while the leg does not lag, rad; a lag adds to it.
     angle: f64,
-    /// Sine and cosine of that angle without its sign.
+    /// Sine and cosine of the magnitude of `angle`.
     sin_cos: (f64, f64),
     /// Length of the strut while the leg does not lag, mm.
     unlagged_length: f64,
 }
 
-/// The part of x above 0, rounded off within `eps`.
+/// The ramp `max(x, 0)` with its kink rounded off within `eps`: value, slope and curvature.
 fn rounded_ramp(x: f64, eps: f64) -> Expansion {
     let length = (x * x + eps * eps).sqrt();
     if length == 0.0 {
@@ -142,7 +142,7 @@ impl Stretch {
 }
 
 impl Side {
-    /// The side of a strut.
+    /// The resistance of a strut with a spring and a slot; `slot` is the slot's length, mm.
     pub fn strut(stretch: Stretch, force: f64, rate: f64, slot: f64) -> Self {
         Self::Strut {
             stretch,
@@ -152,7 +152,7 @@ impl Side {
         }
     }
 
-    /// Energy of a lag beyond the play.
+    /// Energy, torque and stiffness at a lag beyond the play.
     fn expand(&self, beyond: f64, eps: f64, stop: f64) -> Expansion {
         let (excess, slope, curvature) = rounded_ramp(beyond, eps);
         let kink = |torque: f64| (torque * excess, torque * slope, torque * curvature);
@@ -165,7 +165,7 @@ impl Side {
                 rate,
                 end_lag,
             } => {
-                // The kink holds the preload; the rest begins smoothly.
+                // The preload is the torque at a kink; the spring's further torque grows from zero.
                 let preload = force * stretch.lever().abs();
                 let stretching = match beyond > 0.0 {
                     true => stretch.energy(beyond, force, rate, preload),
@@ -205,8 +205,8 @@ impl Side {
 }
 
 impl LagEnergy {
-    /// Energy at a lag (rad), its slope and its curvature, with kinks rounded off within `eps`
-    /// rad.
+    /// Energy at a lag (rad) of leg and servo together, its slope and its curvature, with kinks
+    /// rounded off within `eps` rad.
     pub fn expand(&self, lag: f64, eps: f64) -> Expansion {
         let Some(motor) = &self.motor else {
             return self.expand_leg(lag, eps);
@@ -301,7 +301,7 @@ mod tests {
 
     const STOP: f64 = 400.0;
 
-    /// A strut with arms of 22 mm across a line of 30.2 mm, turned by `angle` deg.
+    /// The triangle of a strut of 30.2 mm with arms of 22 mm, at `angle` deg to the strut.
     fn strut(angle: f64) -> Stretch {
         let (sin, cos) = f64::to_radians(angle).sin_cos();
         let line = [22.0 * cos - 30.2, 22.0 * sin];
@@ -309,6 +309,7 @@ mod tests {
         Stretch::new(f64::hypot(line[0], line[1]), 22.0, between)
     }
 
+    /// Compares slope and curvature of the energy with difference quotients.
     fn assert_slopes(drive: LagEnergy, lags: impl IntoIterator<Item = f64>) {
         for lag in lags {
             let (_, slope, curvature) = drive.expand(lag, 1e-3);

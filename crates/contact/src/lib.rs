@@ -5,7 +5,7 @@
 //! which is a small convex problem: the formula is in `ground.rs`, its solution in `friction.rs`. The shares of
 //! the weight (`stance.rs`) and the lag of a leg behind its servo (`drive.rs`) are part of the same problem. A
 //! pad is a point, whatever its shape: a leg moves its pad without turning it and the body does not tilt, so
-//! the lowest point of a dome stays the same one.
+//! even a domed pad always touches the floor at one and the same point.
 //!
 //! [`Ground`] is one robot on one floor. [`Ground::predict`] predicts the movement for a series of
 //! sweeps, as far as it can be known; a [`Walker`] follows the sweeps step by step.

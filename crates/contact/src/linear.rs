@@ -1,7 +1,8 @@
 //! The solution of three linear equations.
 
-/// Solves a symmetric 3x3 system by Gaussian elimination with pivots. Along a direction without
-/// curvature the cost is flat, and any solution is as good.
+/// Solves a symmetric 3x3 system by Gaussian elimination with pivots. The matrix may be singular: in a
+/// direction without curvature the cost is flat, and any solution is as good. So a tiny number is added
+/// to the diagonal, which selects one.
 pub(crate) fn solve(mut a: [[f64; 3]; 3], mut b: [f64; 3]) -> [f64; 3] {
     let largest = (0..3).fold(0.0f64, |largest, i| largest.max(a[i][i]));
     for (i, row) in a.iter_mut().enumerate() {

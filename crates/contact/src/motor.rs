@@ -23,7 +23,7 @@ pub struct Motor {
 }
 
 impl Motor {
-    /// Returns the same motor on another supply, given as a share of its own.
+    /// Returns this motor at another supply voltage, given as a share of its present one.
     pub fn at_supply(&self, share: f64) -> Self {
         Self {
             stall: self.stall * share,
@@ -77,8 +77,8 @@ impl Motors {
         swings.fold(MAX_STEP, f64::min)
     }
 
-    /// The speed of a slider, mm/s, below which its friction fades so that in a time step it cannot turn a
-    /// servo back.
+    /// The speed of a slider, mm/s, below which its friction falls in proportion to the speed. So the friction
+    /// cannot turn a servo back within a time step.
     pub(crate) fn fade_speed(&self, seconds: f64) -> f64 {
         let arm = |[x, y]: [f64; 2]| x * x + y * y;
         let square = self.joints.arms.map(arm).into_iter().fold(0.0, f64::max);
@@ -116,7 +116,7 @@ mod tests {
         base: 135.0,
     };
 
-    /// A robot of this mass on a floor; a light one hardly holds its servos.
+    /// A robot of this mass (g) on a floor; the feet of a light one hardly load its servos.
     fn ground(mass: f64, friction: f64) -> Ground {
         Ground {
             feet: Feet {
@@ -185,7 +185,7 @@ mod tests {
             walker.drive(targets, 0.02, &motors(quick, JOINTS));
             walker.servos().map(f64::abs).iter().sum::<f64>() / 4.0
         };
-        // Once rotor and legs are up to speed.
+        // The first 20 ms, in which rotor and legs speed up, are left out.
         let mean = (-angle_after() + angle_after()) / 0.02;
         let torque = heavy.grip() * heavy.feet.reach;
         let rate = SG90.no_load_speed * (1.0 - torque / SG90.stall);
@@ -235,7 +235,7 @@ mod tests {
         assert!((lever - 19.8).abs() < 1e-9, "{lever}");
         let share = 1.0 - 3.0 * lever / SG90.stall;
         assert!((slow / fast - share).abs() < 0.06, "{slow} {fast} {share}");
-        // Both feet of a side forward: the arms turn alike, and its length hardly changes.
+        // Both feet of a side swing forward: the slider's arms turn alike, and its length hardly changes.
         let [slow, fast] = [joints, JOINTS].map(|joints| angles_after([1.0; 4], joints)[0]);
         assert!(1.0 - slow / fast < 0.4 * (1.0 - share), "{slow} {fast}");
     }

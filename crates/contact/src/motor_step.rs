@@ -1,6 +1,6 @@
-//! A servo's motor in a short time step, as one convex function of the servo's place at its end. The slopes of
-//! that function are the motor's torque, its damping and the inertia of its rotor. So the contact problem of
-//! `friction.rs` treats a servo like a spring.
+//! A servo's motor in a short time step, as one convex energy of the servo's place at the end of the step. The slope
+//! of that energy is the sum of the torques of the motor, its damping, its rotor's inertia and friction. So the
+//! contact problem of `friction.rs` treats a servo like a spring.
 
 use crate::motor::Motor;
 
@@ -18,11 +18,11 @@ pub(crate) struct ServoState {
 /// The value, slope and curvature of an energy.
 pub(crate) type Expansion = (f64, f64, f64);
 
-/// The energy of a motor in a short time step, as a function of the servo's place: the angle, rad,
-/// by which it is behind a reference, the angle that it would have at an unchanged rate.
+/// The energy of a motor in a short time step, as a function of the servo's place. The place is the
+/// angle, rad, by which the servo is behind a reference: the angle that it would have at an unchanged rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct MotorStep {
-    /// Target ahead of the reference, rad.
+    /// Angle of the target ahead of the reference, rad.
     target_ahead: f64,
     /// Half the dead band: the error up to which there is no torque, rad.
     idle: f64,
@@ -32,7 +32,7 @@ pub(crate) struct MotorStep {
     stall: f64,
     /// Stiffness that the rotor's inertia and the damping have in a step of this length.
     inertial_stiffness: f64,
-    /// Place to which inertia and damping alone would lead, rad.
+    /// Place at the end of the step if only inertia and damping acted, rad.
     unloaded: f64,
     /// Place of a servo that does not turn in this step, rad.
     unmoved: f64,
@@ -99,13 +99,13 @@ impl MotorStep {
         )
     }
 
-    /// Place at the end of the step without a load, to the first order, rad.
+    /// Place of an unloaded servo at the end of the step, to first order, rad.
     pub fn unloaded_end(&self) -> f64 {
         -self.expand(0.0, 0.0).1 / self.inertial_stiffness
     }
 
-    /// The place at which the motor's torque equals the load's. `slope` gives the load's torque
-    /// and stiffness at a place; the torque is at most `max`, and changes fast at the `kinks`.
+    /// The place at which the motor's torque equals the load's. `slope` returns the load's torque and
+    /// stiffness at a place; this torque is at most `max`, and changes fast at the `kinks`.
     pub fn balance(
         &self,
         kinks: [f64; 2],

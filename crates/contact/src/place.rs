@@ -1,4 +1,4 @@
-//! The place of the body on the floor.
+//! The position and heading of the body on the floor.
 
 use crate::friction::Twist;
 use crate::travel::Travel;
@@ -15,17 +15,17 @@ pub struct Place {
 }
 
 impl Place {
-    /// The start.
+    /// The start: the origin, with heading 0.
     pub const START: Self = Self {
         forward: 0.0,
         left: 0.0,
         heading: 0.0,
     };
 
-    /// Moves the body by a twist, held for a unit of time. The path is an arc, so that the opposite twist leads
-    /// back exactly.
+    /// The place after the body has moved with a constant twist for a unit of time. The path is an arc, so that the
+    /// opposite twist leads back exactly.
     pub(crate) fn moved(self, [forward, left, turn]: Twist) -> Self {
-        // sin(turn)/turn and (1 - cos(turn))/turn without a division by zero.
+        // The ratio of the arc's chord to its length. The chord has the direction at half of the turn.
         let half = turn / 2.0;
         let chord = if half == 0.0 { 1.0 } else { half.sin() / half };
         let (sin, cos) = (self.heading + half).sin_cos();
@@ -36,7 +36,7 @@ impl Place {
         }
     }
 
-    /// The movement from an earlier place to this one, seen from the earlier one.
+    /// The movement from an earlier place to this one, in the body's axes at the earlier one.
     pub fn seen_from(self, earlier: Self) -> Travel {
         let (sin, cos) = earlier.heading.sin_cos();
         let (x, y) = (self.forward - earlier.forward, self.left - earlier.left);
@@ -47,7 +47,7 @@ impl Place {
         }
     }
 
-    /// The place after a movement that is seen from this one: the inverse of [`Place::seen_from`].
+    /// The place after a movement in the body's axes at this one: the inverse of [`Place::seen_from`].
     pub fn after(self, movement: Travel) -> Self {
         let [forward, left] = self.on_floor([movement.forward, movement.left]);
         Self {
@@ -57,7 +57,7 @@ impl Place {
         }
     }
 
-    /// Converts a point of the body (forward, left, mm) to the floor.
+    /// Converts a point from the body's axes to those of the floor (both forward, left, mm).
     pub fn on_floor(self, [forward, left]: [f64; 2]) -> [f64; 2] {
         let (sin, cos) = self.heading.sin_cos();
         [
@@ -98,7 +98,7 @@ mod tests {
 
     #[test]
     fn a_body_that_turns_as_it_moves_follows_a_circle() {
-        // A quarter and a half of a circle of radius 10 to the left.
+        // A quarter circle and a half circle, both to the left, of radius 10.
         assert_at(
             Place::START.moved([10.0 * FRAC_PI_2, 0.0, FRAC_PI_2]),
             10.0,

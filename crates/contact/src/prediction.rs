@@ -1,8 +1,8 @@
 //! The prediction of a robot's movement for given sweeps of its legs.
 //!
-//! Two feet against two are a tie: every twist between the two pairs costs the same, and
-//! the smallest difference between the pads decides. The model cannot know that
-//! difference, so it predicts nothing if the result depends on ties.
+//! If two feet pull one way and two the other way, there is a tie: the body may follow either pair, every twist
+//! in between costs the same friction, and the smallest difference between the pads decides. The model cannot know
+//! that difference, so it does not predict the parts of a movement that depend on ties.
 
 use crate::friction::Twist;
 use crate::ground::Ground;
@@ -11,22 +11,24 @@ use crate::walker::Walker;
 
 /// Unevenness of the pads in the test for ties, as a share. No printed pad and no floor is more even.
 const UNEVEN: f64 = 0.01;
-/// Share of the path's length by which a decided movement may differ on uneven pads.
+/// Share of the path's length, or of the sum of its turns, up to which a difference on uneven pads leaves a part of
+/// the movement decided.
 const DECIDED_SHARE: f64 = 0.05;
-/// Distance by which a decided movement may differ on uneven pads, mm.
+/// Difference on uneven pads up to which a movement ahead or to the left is always decided, mm.
 const DECIDED_LENGTH: f64 = 1.0;
-/// Angle by which a decided turn may differ on uneven pads, rad.
+/// Difference on uneven pads up to which a turn is always decided, rad.
 const DECIDED_TURN: f64 = 0.5 * std::f64::consts::PI / 180.0;
 
 /// A walk on slightly uneven pads, compared with the walk on even ones.
 struct Uneven {
     walker: Walker,
-    /// Sums of the differences of all steps: forward, left, turn.
+    /// Sums of the absolute differences of all steps: forward, left, turn.
     total_difference: Twist,
 }
 
 impl Uneven {
-    /// Makes walks in which each pad in turn has a larger load, or the backward friction differs.
+    /// Makes six walks: four in which one pad has a larger load, two with a larger or smaller ratio of backward to
+    /// forward friction.
     fn variants(ground: &Ground, sweeps: [f64; 4]) -> [Self; 6] {
         let uneven = |load, ratio| Self {
             walker: Walker::with_unevenness(*ground, sweeps, load, ratio),
@@ -44,7 +46,8 @@ impl Uneven {
         })
     }
 
-    /// Moves the servos to these sweeps, and sums how far each twist differs from `twists`, those of even pads.
+    /// Moves the servos to these sweeps, and adds up the differences between each twist and that on even pads, which
+    /// `twists` has.
     fn follow(&mut self, sweeps: [f64; 4], twists: &[Twist]) {
         let (mut part, differs) = (twists.iter(), &mut self.total_difference);
         self.walker.move_servos(sweeps, |_, displacement| {
@@ -60,13 +63,13 @@ impl Ground {
     /// Predicts the movement for these sweeps (deg, foot forward positive, servo order) one after
     /// another, as far as it does not depend on ties.
     ///
-    /// The same sweeps are followed on pads made uneven by a hundredth, each pad in turn, then the backward
-    /// friction of all of them. If two feet pull against two, the body then follows one pair or the other. A
-    /// part of the movement is undecided if its end differs by more than 1 mm (0.5 deg) and by more than a
-    /// twentieth of the length of the path. Ahead and turn are also compared step by step: a body dragged to
-    /// and fro by one pair of feet ends at its start, whichever pair it is, but if the pairs change in between
-    /// it may end anywhere on that path. Sideways only the end counts: legs that swing together always spread
-    /// and close, and bring the body back within one swing.
+    /// The same sweeps are followed on uneven pads: the load of each pad in turn, then the backward friction of all
+    /// of them, is changed by a hundredth. If two feet pull against two, the body then follows one pair or the
+    /// other. A part of the movement is undecided if it differs at the end by more than 1 mm (0.5 deg) and by more
+    /// than a twentieth of the length of the path (of the sum of its turns). Ahead and turn are also compared step
+    /// by step: a body dragged to and fro by one pair of feet ends at its start, whichever pair it is, but if the
+    /// pairs change in between, it may end anywhere on that path. For the movement to the side only the end counts:
+    /// legs that swing together always spread and close, and bring the body back within one swing.
     pub fn predict(&self, sweeps: impl IntoIterator<Item = [f64; 4]>) -> Prediction {
         let mut sweeps = sweeps.into_iter();
         let first = sweeps.next().unwrap_or_default();
@@ -107,8 +110,8 @@ impl Ground {
         }
     }
 
-    /// Computes the movement for these sweeps, also if it depends on ties: then with the twist in
-    /// the middle between the two pairs of feet.
+    /// Computes the movement for these sweeps, also if it depends on ties. In a tie, the body moves by the twist
+    /// midway between those of the two pairs of feet.
     pub fn travel(&self, sweeps: impl IntoIterator<Item = [f64; 4]>) -> Travel {
         let mut sweeps = sweeps.into_iter();
         let mut walker = Walker::new(*self, sweeps.next().unwrap_or_default());
@@ -195,7 +198,7 @@ mod tests {
         for starts in [DIAGONAL, ONE_BY_ONE] {
             assert_eq!(GROUND.predict(cycle(starts, sine)).forward, None);
         }
-        // The front feet against the hind feet, as a gesture of the head moves them.
+        // In a gesture of the head, the front feet pull against the hind feet.
         let front = |phase: f64| [sine(phase), sine(phase), 0.0, 0.0];
         let front = (0..=100).map(|i| front(f64::from(i) / 100.0));
         assert_eq!(GROUND.predict(front).forward, None);

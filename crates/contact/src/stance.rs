@@ -20,11 +20,11 @@ pub struct Stance {
     /// Stiffness of a foot, N/mm: its leaf and its pad.
     pub stiffness: f64,
     /// Excess length of the front left foot over the other three, mm; negative if it is too
-    /// short. The same excess at the hind right foot has the same effect, at another foot the
-    /// opposite one.
+    /// short. An equal excess of the hind right foot has the same effect; an excess of one of
+    /// the other two feet has the opposite effect.
     pub twist: f64,
-    /// Uncertainty of that length after levelling, mm to either side. Only predictions on
-    /// random robots use it.
+    /// Uncertainty of `twist` after levelling, mm to either side. Only predictions for random
+    /// robots use it.
     pub level: f64,
 }
 
@@ -51,12 +51,12 @@ impl Stance {
         self.stiffness * self.twist / 4.0
     }
 
-    /// Computes the load of each foot as a share of the mean, with feet at these places (forward,
-    /// left in mm, servo order); 0 for a foot in the air.
+    /// Computes the load of each foot as a share of the mean, with feet at these positions
+    /// (forward, left in mm, servo order); 0 for a foot in the air.
     ///
     /// The feet are springs and the chassis is rigid: it sinks and tilts. So a foot's load is a
-    /// part from its own length plus a part that is linear in its place. The three equations of
-    /// balance determine the latter.
+    /// part from its own length plus a part that is linear in its position. The three equations
+    /// of balance determine the linear part.
     pub fn loads(&self, body: &Body, feet: [Point; 4]) -> [f64; 4] {
         let by_length = [
             self.stiffness * self.twist / body.mean_load(),
@@ -64,8 +64,8 @@ impl Stance {
             0.0,
             0.0,
         ];
-        // All four feet stand, or all but one: in exactly one of these five cases no foot
-        // pulls and none is below the floor.
+        // All four feet stand, or all except one: in exactly one of these five cases no standing
+        // foot pulls and no lifted foot is below the floor.
         let all_but = |lifted: Option<usize>| {
             let stands = std::array::from_fn(|i| lifted != Some(i));
             (stands, pressures(feet, by_length, body.centre, stands))
@@ -78,7 +78,7 @@ impl Stance {
                 false => *pressure <= ZERO_LOAD,
             })
         };
-        // A robot that falls over matches none of these cases; it gets the first one.
+        // A robot that falls over matches no case; it gets the loads of the first one.
         let (stands, pressures) = cases.iter().find(is_consistent).unwrap_or(&cases[0]);
         std::array::from_fn(|i| {
             if stands[i] {
@@ -91,7 +91,7 @@ impl Stance {
 }
 
 /// Computes the load of each foot as a share of the mean if only the feet in `stands` touch the
-/// floor. A negative load means that such a foot pulls, or that another one is above the floor.
+/// floor. A negative load means that a standing foot pulls, or that a lifted one is above the floor.
 fn pressures(feet: [Point; 4], by_length: [f64; 4], centre: Point, stands: [bool; 4]) -> [f64; 4] {
     let mut matrix = [[0.0; 3]; 3];
     let mut moments = [4.0, 4.0 * centre[0], 4.0 * centre[1]];
@@ -194,7 +194,7 @@ mod tests {
         for (load, sign) in loads.into_iter().zip([1.0, -1.0, 1.0, -1.0]) {
             assert!((load - 1.0 - sign * share).abs() < 1e-9, "{loads:?}");
         }
-        // A foot that is much too long carries half the robot, and the one across the other half.
+        // A foot that is much too long and the foot diagonally opposite carry half the robot each.
         let loads = twisted(10.0).loads(&Body::DEFAULT, AT);
         for (load, expected) in loads.into_iter().zip([2.0, 0.0, 2.0, 0.0]) {
             assert!((load - expected).abs() < 1e-6, "{loads:?}");

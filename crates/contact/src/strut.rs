@@ -13,21 +13,21 @@ use lizard_kinematics::wrap;
 use crate::lag_energy::{Side, Stretch};
 use crate::legs::FORWARD;
 
-/// Length that the leg's screw can run in its slot, mm.
+/// Distance that the leg's screw can slide in the slot of its strut, mm.
 pub const SLOT: f64 = 5.0;
 
 /// A slotted strut and its spring; all four struts are equal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Strut {
-    /// Pull of the spring while the screw is at its end of the slot, N.
+    /// Pull of the spring while the leg does not lag, N.
     pub force: f64,
     /// Rate of the spring, N/mm.
     pub rate: f64,
-    /// Length that the screw runs until the slot ends, mm.
+    /// Distance that the screw can slide in the slot, mm.
     pub slot: f64,
     /// Distance from screw to screw while the leg does not lag, mm.
     pub length: f64,
-    /// Length of both arms, mm.
+    /// Length of the servo's arm and of the leg's arm, mm.
     pub radius: f64,
     /// Angle from the strut's direction to the servo's arm at neutral, deg, for each leg in
     /// servo order.
@@ -53,7 +53,7 @@ impl Strut {
         self.stretch(leg, sweep).lever().abs()
     }
 
-    /// Lag at the end of the slot, deg, and the torque there, N mm.
+    /// Lag with the screw at the end of the slot, deg, and the torque at that lag, N mm.
     pub fn end(&self, leg: usize, sweep: f64) -> (f64, f64) {
         let stretch = self.stretch(leg, sweep);
         let lag = stretch.lag_at_growth(self.slot);

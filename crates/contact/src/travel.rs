@@ -1,6 +1,6 @@
 //! The movement of the body over the floor, and its prediction.
 
-/// The movement of the body, seen from its start.
+/// The movement of the body, in the frame of the body at the start of the movement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Travel {
     /// Distance ahead, mm.
@@ -11,7 +11,8 @@ pub struct Travel {
     pub turn: f64,
 }
 
-/// A predicted movement; a part that depends on a tie is `None`.
+/// A predicted movement. A component is `None` if friction does not determine it: with two feet that
+/// pull one way and two the other, the smallest difference between the pads decides.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Prediction {
     /// Distance ahead, mm.
@@ -23,12 +24,12 @@ pub struct Prediction {
 }
 
 impl Prediction {
-    /// True if no part depends on a tie.
+    /// True if friction determines all three components.
     pub fn is_decided(&self) -> bool {
         self.forward.is_some() && self.left.is_some() && self.turn.is_some()
     }
 
-    /// Keeps the parts of a movement that are known in this prediction.
+    /// Returns those components of `travel` that this prediction knows.
     pub fn keep_known(&self, travel: Travel) -> Self {
         Self {
             forward: self.forward.and(Some(travel.forward)),

@@ -13,8 +13,8 @@ use crate::place::Place;
 
 /// Largest sweep of a step, deg. A larger one is divided into equal steps.
 const MAX_SWEEP: f64 = 0.5;
-/// The largest number of iterations in a step. The pads are taken in the middle of a step, which depends on the
-/// lags after it; each iteration improves the middle.
+/// The largest number of iterations in a step. The pads' positions are those in the middle of the step, which depend
+/// on the lags after it; each iteration improves them.
 const MAX_ITERATIONS: usize = 4;
 /// Change of a lag in an iteration below which the lag counts as settled, rad.
 const SETTLED: f64 = 1e-4;
@@ -47,7 +47,7 @@ pub struct Walker {
 pub struct Slip {
     /// Distance that each foot slid over the floor, mm.
     pub feet: [f64; 4],
-    /// Load of each foot at the end, relative to the mean.
+    /// Load of each foot at the end of the movement, relative to the mean.
     pub loads: [f64; 4],
 }
 
@@ -72,8 +72,8 @@ impl Walker {
         Self::with_unevenness(ground, sweeps, [1.0; 4], 1.0)
     }
 
-    /// Makes such a robot with factors on the loads of the pads and on the ratio of backward to
-    /// forward friction.
+    /// Makes a robot that stands with its servos at these sweeps (deg) and its springs at rest, with
+    /// factors on the loads of the pads and on the ratio of backward to forward friction.
     pub fn with_unevenness(ground: Ground, sweeps: [f64; 4], load: [f64; 4], ratio: f64) -> Self {
         Self {
             ground,
@@ -163,7 +163,7 @@ impl Walker {
                 grip,
             ))
         });
-        // The servos at an unchanged rate, and the legs with them.
+        // The sweeps of the servos at an unchanged rate, from which their lags are counted.
         let reference: [f64; 4] = std::array::from_fn(|i| match targets[i] {
             Some(_) => servos[i] + self.rates[i] * seconds,
             None => servos[i],
@@ -226,7 +226,7 @@ impl Walker {
         slip
     }
 
-    /// Moves the servos to these sweeps in small steps and calls `visit` after each.
+    /// Moves the servos to these sweeps in small steps, without inertia, and calls `visit` after each step.
     pub(crate) fn move_servos(
         &mut self,
         sweeps: [f64; 4],
@@ -283,7 +283,7 @@ impl Walker {
         let ends: [f64; 4] = std::array::from_fn(|i| servos[i] - lag[i].to_degrees());
         let to = feet.positions(ends);
         let along = feet.sweep_derivatives(ends);
-        // In the middle of the step, so that the reverse step is its exact inverse.
+        // Positions in the middle of the step, so that the reverse step is its exact inverse.
         let positions = points_from(&|i, j| (from[i][j] + to[i][j]) / 2.0);
         let lag_before = self.lag.map(f64::to_radians);
         let (load, ratio) = self.uneven;

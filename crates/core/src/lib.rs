@@ -1,12 +1,11 @@
 //! The core of a robotic lizard's firmware, for any such robot and any board.
 //!
-//! Four hobby servos drive two five-bar linkages; four dragging feet follow them. A line
-//! of text asks for a gait or a pose; fifty times a second the core turns the request
-//! into four pulse widths that the servos can follow and that cannot break a linkage of
-//! the robot.
+//! Four hobby servos drive two five-bar linkages and four legs, whose feet drag on the floor. A line of text asks
+//! for a gait or a pose; fifty times a second the core turns the request into four pulse widths that the servos
+//! can follow and that cannot break a linkage of the robot.
 //!
-//! Values move in one direction. A console gives orders to the robot, the robot computes a frame fifty times a
-//! second, and its answers return along the same path:
+//! Commands pass from the console to the pulses, through the types of the first row; answers return through those of
+//! the second:
 //!
 //! ```text
 //!         Console                     Control                                Board
@@ -15,8 +14,8 @@
 //! ```
 //!
 //! [`step::Main`] joins a [`console::Console`] and a [`control::Control`]: it is the loop
-//! that a board repeats. Below it are six rooms, each a folder that uses only those under
-//! it:
+//! that a board repeats. Below it are six modules, called rooms; each uses only those below
+//! it in this table:
 //!
 //! | room | contents |
 //! |---|---|
@@ -24,12 +23,12 @@
 //! | [`control`] | orders, refusals, the [`control::supervisor`]'s table, faults, supplies |
 //! | [`motion`] | gaits, moves between poses, and the changes from one to the next |
 //! | [`guard`] | the geometry: margins to the singularities, strokes, the limit that a pose breaks |
-//! | [`memory`] | settings and poses that outlast power, and a state that outlasts a reset |
+//! | [`memory`] | settings and poses that survive power-off, and a state that survives a reset |
 //! | [`numbers`] | units, and the section of flash with the numbers of a robot |
 //!
 //! This example shows two pieces that need no robot: bytes become a line, and an angle
-//! becomes the pulse that turns a servo there. All of it, on a board without a chip, is
-//! in `virtual_board` (feature `host`).
+//! becomes the pulse that turns a servo there. A whole robot on a simulated board is in
+//! `virtual_board` (feature `host`).
 //!
 //! ```
 //! use lizard_core::numbers::calibration::Calibration;
@@ -56,10 +55,10 @@
 //! The goals, in this order, if two of them conflict:
 //!
 //! 1. **Safe.** No frame is sent without the guard, no two servos wake together, and a
-//!    fault ends in a robot that stands still and says why.
+//!    after a fault the robot stands still and reports the reason.
 //! 2. **Exact.** A pulse is right to the cycle, and a frame on the host equals the chip's
 //!    to the bit.
-//! 3. **Plain.** A type for a thing, an enum for a choice, a message for a refusal.
+//! 3. **Plain.** Each concept is a type, each choice is an enum, and each refusal has a message.
 //! 4. **Small.** Flash and RAM come last: a type that costs a few bytes stays, as long as
 //!    the program fits.
 //!

@@ -101,6 +101,7 @@ impl Deref for Sample {
 }
 
 impl Sample {
+    /// The robot of these measurements, in integers.
     pub fn new(measures: Measures) -> Self {
         let Measures {
             lizard,
@@ -180,11 +181,12 @@ impl Sample {
             .prop_filter("stands safely", Self::stands_safely)
     }
 
+    /// True if the integer guard accepts the neutral pose.
     pub fn stands_safely(&self) -> bool {
         Clearance::of(self, &Pose::NEUTRAL).hazard(self).is_none()
     }
 
-    /// The same robot with another hash.
+    /// This robot with another hash, in a section with a correct checksum.
     pub fn with_hash(&self, hash: u32) -> Robot<'static> {
         let mut section = self.content.section();
         let offset = offset_of!(Header, hash);
@@ -315,8 +317,9 @@ pub const HEALTHY: Health = Health {
     is_closed: false,
 };
 
-/// The inputs of routines.
+/// The button of routines.
 pub const BUTTON: Input = Input::button(15);
+/// The obstacle switch of routines.
 pub const NOSE: Input = Input::nose(16);
 
 /// A sine, a slow rise with a quick fall, and a hump, each to be scaled by a gain.

@@ -1,10 +1,11 @@
 //! The step that a firmware's main loop repeats.
 //!
-//! A tick of the pulses or a received byte wakes the main loop. It does one thing at a time and looks for a tick
-//! first, so a frame waits for one byte or one line at most. It takes no input while it writes its memory (3.4 ms a
-//! byte), or while an answer waits for room in the serial line; so it never waits for a listener. It computes one
-//! frame per tick. If it is too late for a tick, it skips that tick: only the last of several frames would be played,
-//! and the servos would jump. It also skips a tick while a late frame still waits to be played.
+//! A tick of the pulses or a received byte wakes the main loop. Each step does one thing, and a tick comes first,
+//! so a frame waits for one byte or one line at most. The loop takes no input while it writes its memory (3.4 ms a
+//! byte), or while an answer waits for room in the transmit buffer; but frames continue even if nobody reads the
+//! answers. It computes one frame per tick. If several ticks have passed, it still computes only one: of several
+//! frames only the last would be played, and the servos would jump. While the pulses run, it also skips a tick if
+//! the previous frame still waits to be played.
 
 use lizard_avr::Region;
 
@@ -39,7 +40,7 @@ pub trait Board {
     /// 14 to 19 are A0 to A5. Called once, before the first pulses.
     fn connect(&mut self, servos: [u8; 4], rail: Option<u8>);
 
-    /// The number of ticks since power-on, modulo 256; there is one every 20 ms.
+    /// The number of ticks since the program started, modulo 256; there is one every 20 ms.
     fn ticks(&self) -> u8;
 
     /// True if the last submitted pulses have been taken over, or none were submitted. This shows that the clock and
@@ -88,7 +89,7 @@ pub trait Board {
     /// Changes the rate of the serial line, and stores the rate in memory that survives a reset.
     fn set_rate(&mut self, rate: Rate);
 
-    /// The counts of faults so far.
+    /// The numbers of late pulse edges and of lost bytes since the program started.
     fn counters(&self) -> Counters;
 }
 

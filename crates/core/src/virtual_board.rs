@@ -41,20 +41,20 @@ pub use transmitter::Transmitter;
 /// Milliseconds from one tick to the next.
 pub const FRAME_MS: u8 = units::FRAME_MS as u8;
 
-/// Milliseconds from the tick to the hand-over, and from the start of one servo's pulse to that of the next servo.
+/// Milliseconds from the tick to the hand-over, and from the start of each servo's pulse to the start of the next.
 const SLOT_MS: u8 = 4;
 
-/// Milliseconds without feeding after which the watchdog interrupts the program; after the same time again, it resets
+/// Milliseconds without feeding after which the watchdog interrupts the program. After twice this time, it resets
 /// the processor.
 pub const WATCHDOG_MS: u16 = 125;
 
-/// Bytes that the receiver stores for the main loop.
+/// Capacity of the receive buffer, bytes.
 const RECEIVED: usize = 64;
 
-/// The pulse widths that fit a slot; any other gives no pulse.
+/// Pulse widths that fit a slot, 1/16 us; any other width gives no pulse.
 const WIDTHS: core::ops::RangeInclusive<u16> = 1_000..=63_000;
 
-/// A board without a chip.
+/// The state of a virtual board: what a UNO keeps in its registers, memories and pins.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct VirtualBoard {
     /// Milliseconds since the last tick.
@@ -74,7 +74,7 @@ pub struct VirtualBoard {
     pub is_stack_intact: bool,
     /// The pins whose contacts are closed, one bit for each Arduino number.
     pub closed: u32,
-    /// The pins whose pull-ups are on, in the same bits.
+    /// The pins whose pull-ups are on, one bit for each Arduino number.
     pub pulled_up: u32,
     /// The transmitter of the serial line.
     pub transmitter: Transmitter,

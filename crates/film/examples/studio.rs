@@ -1,5 +1,6 @@
-//! A film with known truth for the page's tests: FOLDER/film.y4m, which a browser uses as its camera; the same
-//! pictures in FOLDER/pictures; and the true displacement of a cycle in FOLDER/truth.json.
+//! Renders a film of a walk whose displacement is known, for the page's tests: FOLDER/film.y4m, which a browser
+//! uses as its camera; the same pictures in FOLDER/pictures; and the true displacement per cycle in
+//! FOLDER/truth.json.
 //!
 //! `studio FOLDER WIDTH CYCLES [HIDDEN TAG]...`: the given number of cycles of the paper's `walk`, with a rest before
 //! and after.

@@ -6,7 +6,7 @@
 
 use crate::picture::{Picture, Pixel};
 
-/// Half the edge of a pixel's surroundings, as a share of the picture's height.
+/// Half the edge of the square of surroundings with which a pixel is compared, as a share of the picture's height.
 const AROUND: f64 = 1.0 / 24.0;
 /// Largest grey of a dark pixel, percent of the mean of its surroundings.
 const DARK_PERCENT: u32 = 88;
@@ -20,13 +20,14 @@ const FILLED: [f64; 2] = [0.3, 1.2];
 /// Four corners, accurate to some pixels, clockwise as seen in the picture.
 pub(crate) type Quad = [Pixel; 4];
 
-/// Half the edge of the surroundings of a pixel in a picture, px.
+/// Half the edge of the square of surroundings with which a pixel is compared, px.
 pub(crate) fn reach(picture: &Picture) -> usize {
     let [_, height] = picture.size();
     ((height as f64 * AROUND) as usize).max(LEAST / 2)
 }
 
-/// Finds the blobs that are nearly quadrilaterals, with a pixel's surroundings of `reach` px on each side.
+/// Finds the dark blobs that are nearly quadrilaterals. A pixel is compared with its surroundings up to `reach` px
+/// on each side.
 pub(crate) fn quads(picture: &Picture, reach: usize) -> Vec<Quad> {
     let [width, height] = picture.size();
     let mut dark = dark(picture, reach);
@@ -99,7 +100,7 @@ fn dark(picture: &Picture, reach: usize) -> Vec<bool> {
     dark
 }
 
-/// The corners of a blob, if it lies inside the picture and is nearly a quadrilateral.
+/// The corners of a blob; `None` if it is small, reaches the picture's border, or is not nearly a quadrilateral.
 fn quad(blob: &[usize], width: usize, height: usize) -> Option<Quad> {
     if blob.len() < LEAST * LEAST / 4 {
         return None;

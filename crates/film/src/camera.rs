@@ -8,7 +8,8 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 use crate::homography::Homography;
 use crate::picture::Pixel;
 
-/// Position and direction of a camera: a rotation vector and a shift, mm.
+/// Position and direction of a camera: a rotation vector from the floor's axes to the camera's, rad, and a shift in
+/// the camera's axes, mm.
 pub(crate) type Pose = [f64; 6];
 
 /// A camera in its pose.
@@ -45,7 +46,7 @@ impl Camera {
         self.rotation.column(2).into_owned()
     }
 
-    /// Converts a direction from the camera's axes to those of the floor.
+    /// Converts a direction from the camera's axes to the floor's axes.
     pub(crate) fn on_floor(&self, direction: &Vector3<f64>) -> Vector3<f64> {
         self.rotation.tr_mul(direction)
     }
@@ -63,7 +64,8 @@ fn middle(size: [usize; 2]) -> Pixel {
     size.map(|length| (length as f64 - 1.0) / 2.0)
 }
 
-/// The pose of a camera with this focal length that maps the floor to its picture by this homography.
+/// The pose of a camera with this focal length that maps the floor to its picture by this homography; `None` if the
+/// homography is degenerate.
 pub(crate) fn pose_of(map: &Homography, focal: f64, size: [usize; 2]) -> Option<Pose> {
     let [cx, cy] = middle(size);
     let calibration = Matrix3::new(focal, 0.0, cx, 0.0, focal, cy, 0.0, 0.0, 1.0);

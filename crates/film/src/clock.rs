@@ -9,27 +9,31 @@ use crate::least;
 use crate::path::{self, PathPoint};
 use crate::trouble::Trouble;
 
-/// Part of a cycle over which the movement is compared.
+/// Duration of a compared movement, in cycles.
 const PART: f64 = 0.25;
 /// Smallest number of movements.
 const LEAST: usize = 8;
 /// Standard deviation of a cycle's duration, as a share: the board has a ceramic resonator.
 const SIGMA: f64 = 0.003;
-/// Largest share by which a wrong picture rate makes a cycle longer or shorter, such as 25 per second taken for 24 or
-/// 27; the step of the search; and the standard deviation of the duration found by it.
+/// Largest share by which a wrong picture rate makes a cycle longer or shorter, such as 25 per second taken for 24
+/// or 27.
 const LARGEST_RATE_ERROR: f64 = 0.08;
+/// Step of the search for the duration of a cycle if the picture rate is wrong, as a share.
 const OFF_STEP: f64 = 0.005;
+/// Standard deviation of a duration found by that search, as a share.
 const OFF_SIGMA: f64 = 0.01;
 /// Number of cycle beginnings that are tried.
 const BEGINNINGS: usize = 48;
-/// Smallest difference from the predicted movement that shows another gait, as a share of the sum of both squares.
+/// Smallest squared difference between measured and predicted movements that shows another gait, as a share of the
+/// sum of the squares of both.
 const ANOTHER: f64 = 0.5;
-/// Smallest difference of a cycle's movement from that of the next cycle that shows a change, as a share of the mean
-/// of both squares.
+/// Smallest squared difference between the movements of two consecutive cycles that shows a change, as a share of
+/// the mean of the squares of both.
 const CHANGES: f64 = 0.15;
 /// Multiples of a cycle's duration that are tried.
 const LONGER: [u32; 3] = [2, 4, 8];
-/// Largest share of the difference, and of the movement itself, that another duration may leave to be accepted.
+/// Largest misfit with which another duration of a cycle is accepted, as a share of the misfit with the expected
+/// duration. A multiple of the duration must also leave less than this share of the movement itself.
 const MUCH_BETTER: f64 = 0.3;
 
 /// The beginning of a cycle and the duration of a cycle, each with its standard error, s.
@@ -39,17 +43,17 @@ pub(crate) struct Clock {
     pub period: [f64; 2],
 }
 
-/// The movements from the time of each picture to a time that is later by a part of a cycle.
+/// The robot's movements over a fixed part of a cycle, one movement from each picture.
 #[derive(Debug, Clone)]
 pub(crate) struct Steps {
-    /// The duration of that part, s.
+    /// Duration of each movement, s.
     later: f64,
-    /// Times of the pictures, s, and movements from there.
+    /// Time of the picture at which a movement begins, s, and the movement.
     steps: Vec<(f64, [f64; 3])>,
 }
 
 impl Steps {
-    /// The movements of a path.
+    /// Computes the movements along a path; the robot's cycles last `period` seconds.
     pub(crate) fn of(path: &[PathPoint], period: f64) -> Self {
         let later = PART * period;
         let step = |seen: &PathPoint| {
@@ -76,7 +80,7 @@ impl Steps {
         let near = |start: f64, period: f64| squares(&self.sways(gait, start, period));
         let (mut least, mut start, mut period) = self.best(gait.period, &tries, near);
         let (mut expected, mut doubt) = (gait.period, SIGMA);
-        // The picture rate is off: then only the path itself gives the duration of a cycle.
+        // If the picture rate is wrong, only the path itself gives the duration of a cycle.
         let off = self.best(gait.period, &wide_tries(gait), near);
         if off.0 < MUCH_BETTER * least {
             (least, start, period) = off;
@@ -118,13 +122,15 @@ impl Steps {
         })
     }
 
-    /// The smallest difference from the predicted movement, as a share of the movement's squares.
+    /// The misfit of a gait: the squared difference between measured and predicted movements, as a share of the
+    /// measured movements' squares, with the start and duration of a cycle that fit best.
     pub(crate) fn misfit(&self, gait: &Gait) -> f64 {
         let away = |start: f64, period: f64| squares(&self.differences(gait, start, period));
         self.best(gait.period, &tries(gait), away).0 / self.moved()
     }
 
-    /// The smallest such difference for cycles that take a multiple of their duration, and that multiple.
+    /// The misfit of a gait whose cycles take a multiple of their usual duration, and that multiple; the best of
+    /// all multiples that are tried.
     pub(crate) fn misfit_of_longer(&self, gait: &Gait) -> (f64, u32) {
         let away = |start: f64, period: f64| squares(&self.differences(gait, start, period));
         let longer = LONGER.map(|times| {
@@ -135,12 +141,13 @@ impl Steps {
         least.unwrap_or((f64::INFINITY, 1))
     }
 
-    /// The sum of the squares of the movements.
+    /// The sum of the squares of the measured movements.
     fn moved(&self) -> f64 {
         self.steps.iter().map(|(_, seen)| size(*seen).powi(2)).sum()
     }
 
-    /// The beginning of the first cycle whose movement differs from that of the next one, s.
+    /// The beginning of the first cycle whose movement differs from that of the next cycle, s; `None` if all are
+    /// alike.
     pub(crate) fn change(&self, period: f64) -> Option<f64> {
         let first = self.steps.first()?.0;
         let last = self.steps.last()?.0;
@@ -159,7 +166,7 @@ impl Steps {
         })
     }
 
-    /// The movement from a time between two pictures, interpolated.
+    /// The movement that begins at a time between two pictures, interpolated; `None` outside the film.
     fn at(&self, seconds: f64) -> Option<[f64; 3]> {
         let after = self.steps.partition_point(|(time, _)| *time < seconds);
         let (b, later) = self.steps.get(after)?;
@@ -168,8 +175,8 @@ impl Steps {
         Some([0, 1, 2].map(|axis| earlier[axis] + share * (later[axis] - earlier[axis])))
     }
 
-    /// The smallest value of a function of a cycle's start and duration, with both. Tries starts within a cycle of
-    /// `period`, and all `periods`.
+    /// Minimizes a function of a cycle's start and duration; returns its value, the start and the duration. Tries
+    /// starts within a cycle of `period`, and all `periods`.
     fn best(
         &self,
         period: f64,
@@ -193,7 +200,7 @@ impl Steps {
         best
     }
 
-    /// The movements minus the predicted ones, axis by axis.
+    /// The measured minus the predicted movements, axis by axis.
     fn differences(&self, gait: &Gait, start: f64, period: f64) -> Vec<f64> {
         let difference = |(time, seen): &(f64, [f64; 3])| {
             let phase = (time - start) / period;
@@ -203,7 +210,7 @@ impl Steps {
         self.steps.iter().flat_map(difference).collect()
     }
 
-    /// The differences minus their means: those of the variation alone.
+    /// The [`Steps::differences`] minus their mean on each axis, so that only the variation within a cycle counts.
     fn sways(&self, gait: &Gait, start: f64, period: f64) -> Vec<f64> {
         let mut sways = self.differences(gait, start, period);
         for axis in 0..3 {
@@ -219,7 +226,7 @@ impl Steps {
     }
 }
 
-/// The durations of a cycle that are tried if the picture rate may be off.
+/// The durations of a cycle that are tried if the picture rate may be wrong.
 fn wide_tries(gait: &Gait) -> Vec<f64> {
     let steps = (LARGEST_RATE_ERROR / OFF_STEP) as i32;
     let time = |step: i32| gait.period * (1.0 + OFF_STEP * f64::from(step));

@@ -1,10 +1,10 @@
 //! The cycles of a path.
 //!
-//! A distance per cycle means little without the phase at which a cycle begins: the body sways, so another phase has
-//! another forward direction. And a clock that is off by half a percent makes every cycle too long by as much. So
-//! both are fitted (`clock.rs`). Cycles are compared at a calm phase, at which the robot moves evenly, since pictures
-//! are some time apart. The displacement from the beginning of a cycle to its calm phase then refers the result to
-//! the beginning.
+//! A distance per cycle means little without the phase at which a cycle begins: the body sways, so another phase
+//! has another forward direction. And a clock that is off by half a percent makes every cycle too long by as much.
+//! So both are fitted (`clock.rs`). Cycles are compared at a calm phase, at which the robot moves evenly, since
+//! pictures are some time apart. The displacement from the beginning of a cycle to its calm phase then converts the
+//! result to one that is measured from the beginning.
 
 use lizard_contact::{Place, Travel};
 
@@ -13,13 +13,14 @@ use crate::gait::{Gait, HALF_WINDOW, MOVED, movement, size};
 use crate::path::{self, PathPoint};
 use crate::trouble::Trouble;
 
-/// Smallest share of the usual movement per cycle for the robot to count as walking.
+/// Smallest share of the usual movement per cycle for the robot to count as walking evenly.
 const WALKS: f64 = 0.9;
-/// Smallest share of the usual movement for the robot to count as walking unevenly, as when it starts or stops;
-/// below, the number of cycles for which it may do so.
+/// Smallest share of the usual movement per cycle for the robot to count as walking unevenly, as when it starts or
+/// stops.
 const UNEVEN_SHARE: f64 = 0.25;
+/// Longest time for which the robot may walk unevenly before and after the even walk, in cycles.
 const UNEVEN: f64 = 1.25;
-/// Part of a cycle that is ignored after the start and before the stop.
+/// Time that is ignored after the start and before the end of the even walk, in cycles.
 const MARGIN: f64 = 0.15;
 
 /// The cycles of a path.
@@ -56,14 +57,14 @@ pub(crate) fn find(path: &[PathPoint], gait: &Gait) -> Result<Cycles, Trouble> {
         return Err(Trouble::Changes { seconds });
     }
     let calm = gait.calm_phase();
-    // The times of the calm phases, from before the walk to after it.
+    // The times of the calm phases within the walk.
     let first = ((begin - start) / period[0] - calm).ceil() as i64;
     let times = (first..).map(|i| start + (i as f64 + calm) * period[0]);
     let near = HALF_WINDOW * gait.period;
     let places: Vec<(f64, Place)> = times
         .take_while(|&time| time <= end)
         .map(|time| Some((time, path::smoothed_at(path, time, near)?)))
-        // The first cycle may have too few pictures before it.
+        // The first calm phase may have too few pictures before it.
         .skip_while(Option::is_none)
         .map_while(|place| place)
         .collect();
@@ -90,12 +91,13 @@ pub(crate) fn find(path: &[PathPoint], gait: &Gait) -> Result<Cycles, Trouble> {
     })
 }
 
-/// The movements while the robot walks evenly, if they are enough for a comparison with a gait.
+/// Computes the movements while the robot walks evenly; fails if they are too few for a comparison with a gait.
 pub(crate) fn steps(path: &[PathPoint], gait: &Gait) -> Result<Steps, Trouble> {
     Ok(Steps::of(walked(path, gait)?.0, gait.period))
 }
 
-/// The path while the robot walks evenly, and the beginning and end of that time.
+/// Selects the part of a path on which the robot walks evenly; returns it with the times of its beginning and end,
+/// s.
 fn walked<'a>(path: &'a [PathPoint], gait: &Gait) -> Result<(&'a [PathPoint], [f64; 2]), Trouble> {
     let [begin, end] = walk(path, gait)?;
     let first = path.partition_point(|seen| seen.seconds < begin);
@@ -114,7 +116,8 @@ fn too_short(seconds: f64, gait: &Gait) -> Trouble {
     }
 }
 
-/// The mean displacement from the beginning of a cycle to its calm phase.
+/// The mean displacement from the beginning of a cycle to its calm phase; `None` if no cycle has pictures before
+/// and after its beginning.
 fn to_calm(
     path: &[PathPoint],
     places: &[(f64, Place)],
@@ -137,8 +140,9 @@ fn to_calm(
     })
 }
 
-/// The place at the beginning of a cycle: from the pictures before and after it, by the predicted movement in
-/// between. A straight line between them would not be the path of a gait that begins with a jerk.
+/// The place at the beginning of a cycle: the places in the pictures before and after it are moved to it by the
+/// predicted movement, then interpolated. Without the prediction, interpolation would be wrong for a gait that
+/// begins with a jerk. `None` if there is no picture before or after.
 fn begin(path: &[PathPoint], seconds: f64, period: f64, gait: &Gait) -> Option<Place> {
     let after = path.partition_point(|seen| seen.seconds < seconds);
     let (a, b) = (path.get(after.checked_sub(1)?)?, path.get(after)?);
@@ -151,7 +155,7 @@ fn begin(path: &[PathPoint], seconds: f64, period: f64, gait: &Gait) -> Option<P
     Some(path::interpolate(by(a), by(b), share))
 }
 
-/// The beginning and end of the time in which the robot walks evenly.
+/// Finds the beginning and the end of the time in which the robot walks evenly, s.
 fn walk(path: &[PathPoint], gait: &Gait) -> Result<[f64; 2], Trouble> {
     let moves: Vec<(f64, Travel)> = path
         .iter()

@@ -1,20 +1,20 @@
 //! Finds the edges of a tag with an error much smaller than a pixel.
 //!
-//! Lens and movement blur an edge over several pixels, but equally to both sides. So along a line
-//! across the edge, the sum of grey is the same as for a sharp step, and that step's place is the
-//! place of the edge. A straight line is fitted to many of these places. Its error is much smaller
-//! than a pixel, and two lines meet in a corner.
+//! Lens and movement blur an edge over several pixels, but equally to both sides. So along a line across the edge,
+//! the sum of grey is the same as for a sharp step, and the position of that step is the position of the edge. A
+//! straight line is fitted to many of these positions. Its error is much smaller than a pixel, and two lines
+//! intersect in a corner.
 
 use crate::blobs::Quad;
 use crate::picture::{Picture, Pixel};
 use crate::sheet::SQUARES;
 
-/// Share of an edge that is left out at either end, since the next edge is near there.
+/// Share of an edge's length that is ignored next to each corner, since the adjacent edge is too near.
 const ENDS: f64 = 0.12;
 /// Distance to either side of an edge over which grey is sampled, px, if the tag is large enough.
 const ACROSS: f64 = 4.0;
-/// The same for small tags, as a share of a square's width: the code begins one square inside, and the first
-/// corners have an error of a pixel.
+/// Largest such distance, as a share of a square's width, which limits it for small tags: the code begins one
+/// square inside, and the first corners have an error of a pixel.
 const ACROSS_SQUARE: f64 = 0.6;
 /// Distance between samples across an edge, px.
 const STEP: f64 = 0.5;
@@ -40,8 +40,8 @@ struct Line {
     along: [f64; 2],
 }
 
-/// Refines the corners of a quadrilateral; `None` if it has no four straight edges from black
-/// inside to white outside.
+/// Refines the corners of a quadrilateral; `None` if it has no four straight edges, long enough, from black inside
+/// to white outside.
 pub(crate) fn refine(picture: &Picture, quad: Quad) -> Option<Square> {
     let mut square = Square {
         corners: quad,
@@ -65,7 +65,8 @@ pub(crate) fn refine(picture: &Picture, quad: Quad) -> Option<Square> {
     Some(square)
 }
 
-/// Fits the edge between two corners; returns it with the grey halfway from black to white, or `None`.
+/// Fits a line to the edge between two corners; returns the line, and the grey halfway between black and white.
+/// `None` if the edge is too short, too long, without contrast, or not straight.
 fn edge(picture: &Picture, from: Pixel, to: Pixel) -> Option<(Line, f64)> {
     let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
     let length = dx.hypot(dy);
@@ -132,7 +133,7 @@ fn edge(picture: &Picture, from: Pixel, to: Pixel) -> Option<(Line, f64)> {
     Some((line, (black + white) / 2.0))
 }
 
-/// The point in which two lines meet; `None` if they are parallel.
+/// The intersection of two lines; `None` if they are parallel.
 fn meet(a: &Line, b: &Line) -> Option<Pixel> {
     let cross = a.along[0] * b.along[1] - a.along[1] * b.along[0];
     let [x, y] = [b.at[0] - a.at[0], b.at[1] - a.at[1]];

@@ -50,8 +50,8 @@ type Tags = [Option<[Pixel; 4]>; CODES.len()];
 
 impl Film {
     /// Finds the tags of a picture, which is not stored. If the last picture showed all tags, it searches only near
-    /// their places there, which takes a fraction of the time; but every sixteenth picture gets a full search. If a
-    /// full search finds an id twice, both tags are returned.
+    /// their last places, which takes a fraction of the time. If a tag is missing there, and in every sixteenth
+    /// picture, it searches the whole picture. If that search finds an id twice, both tags are returned.
     pub fn find_tags(&mut self, picture: &Picture) -> Vec<Tag> {
         self.since_whole = (self.since_whole + 1) % FULL_SEARCH_INTERVAL;
         let last = self.last.iter().enumerate();
@@ -105,7 +105,8 @@ impl Film {
     /// Finds the camera and the robot's path.
     ///
     /// # Errors
-    /// Fails if the tags do not determine them, or contradict the setup.
+    /// Fails if the tags do not determine camera and path, contradict the setup, or show the robot too far from the
+    /// floor tags.
     pub fn watch(&self, setup: Setup) -> Result<Watched, Trouble> {
         self.check_tags()?;
         let moved = self.is_moved();
@@ -153,7 +154,7 @@ impl Film {
         Ok(Watched::new(path, sight, scene, frames, setup.height))
     }
 
-    /// Checks that every tag is visible often enough.
+    /// Checks that every floor tag is visible at least once, and the deck tag in most pictures.
     fn check_tags(&self) -> Result<(), Trouble> {
         let pictures = self.frames.len();
         let seen = |id: usize| {
@@ -193,7 +194,8 @@ impl Film {
         })
     }
 
-    /// True if the camera moved: then two or more tags are elsewhere, while a partly covered tag is only one.
+    /// True if the camera moved: in more than 2 % of the pictures, two or more floor tags are not at their usual
+    /// places. A single displaced tag is one that is partly covered.
     fn is_moved(&self) -> bool {
         let usual = self.usual_floor_corners();
         let is_elsewhere = |tag: &[Pixel; 4], usual: &[Pixel; 4]| {

@@ -23,7 +23,8 @@ impl Frame {
         Some([a?, b?, c?, d?])
     }
 
-    /// The camera of the picture: that of the scene unless the camera moved.
+    /// The camera of the picture: the scene's camera, or, if the camera moved, the one found by the picture's floor
+    /// tags; `None` if these do not determine it.
     pub(crate) fn camera(&self, scene: &Scene, moved: bool) -> Option<Camera> {
         match moved {
             false => Some(scene.camera()),
@@ -31,7 +32,7 @@ impl Frame {
         }
     }
 
-    /// The robot's place, if the needed tags are visible.
+    /// The robot's place; `None` if the needed tags are not visible or do not determine it.
     pub(crate) fn place(&self, scene: &Scene, moved: bool) -> Option<Place> {
         let camera = self.camera(scene, moved)?;
         scene.place(&camera, self.tags[DECK_TAG].as_ref()?)

@@ -6,9 +6,9 @@ use crate::path;
 
 /// Weight of a turn, mm per rad: the distance of the robot's legs from its middle.
 const ARM: f64 = 60.0;
-/// Smallest movement that counts as such, mm.
+/// Smallest movement per cycle with which a robot counts as moving, mm.
 pub(crate) const MOVED: f64 = 3.0;
-/// Half of the time whose pictures determine the place at the end of a cycle, in cycles.
+/// Half of the time window whose pictures determine the place at a calm phase, in cycles.
 pub(crate) const HALF_WINDOW: f64 = 0.08;
 
 /// A predicted gait.
@@ -40,7 +40,8 @@ impl Gait {
         place
     }
 
-    /// The phase around which the predicted movement changes least: a place between pictures is most accurate there.
+    /// The phase around which the predicted movement changes least: there, interpolation between pictures is most
+    /// accurate.
     pub(crate) fn calm_phase(&self) -> f64 {
         let count = 50;
         let roughness = |i: usize| {
@@ -59,13 +60,13 @@ impl Gait {
         least.unwrap_or(0) as f64 / count as f64
     }
 
-    /// The movement around a phase, scaled to an entire cycle: mm, mm, deg.
+    /// The predicted movement around a phase, scaled to an entire cycle: mm, mm, deg.
     pub(crate) fn pace(&self, phase: f64) -> [f64; 3] {
         let [forward, left, turn] = self.step(phase - HALF_WINDOW / 2.0, phase + HALF_WINDOW / 2.0);
         [forward, left, (turn / ARM).to_degrees()].map(|part| part / HALF_WINDOW)
     }
 
-    /// The movement from a phase to a later one.
+    /// The predicted movement from a phase to a later one.
     pub(crate) fn step(&self, from: f64, to: f64) -> [f64; 3] {
         let whole = from.floor();
         movement(self.at(to - whole).seen_from(self.at(from - whole)))

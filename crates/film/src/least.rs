@@ -1,10 +1,10 @@
-//! Least squares by Levenberg and Marquardt, for a few dozen parameters.
+//! Nonlinear least squares by the method of Levenberg and Marquardt, for a few dozen parameters.
 
 use nalgebra::{DMatrix, DVector};
 
 /// Largest number of steps.
 const STEPS: usize = 60;
-/// Relative gain of a step below which the fit ends.
+/// Relative decrease of the sum of squares in a step, below which the fit ends.
 const ENOUGH: f64 = 1e-10;
 
 /// The parameters with the smallest sum of squares.

@@ -5,10 +5,11 @@
 //! tags of each picture. [`Film::watch`] finds the camera (`scene.rs`) and the path (`path.rs`). [`Watched::walks`]
 //! finds the walks between the robot's rests (`walks.rs`), [`Watched::likeness`] the gait of a walk (`likeness.rs`).
 //! [`Watched::measure`] finds the cycles of a walk (`cycles.rs`, `clock.rs`), their mean with its error (`mean.rs`)
-//! and the path within them (`within.rs`). The crate reads no file and prints nothing.
+//! and the path within them (`within.rs`). Two other measurements use the same tags: [`Slide`] is the friction of the
+//! pads, and [`Turns`] is the response of a single servo. The crate reads no file and prints nothing.
 //!
 //! # When not to use it
-//! It measures one robot in one plane. For places in space, or many markers, use AprilTag's own library.
+//! It measures one robot in one plane. For positions in space, or for many markers, use AprilTag's own library.
 //!
 //! # Units
 //! mm, s, and px from the middle of a picture's top left pixel; a heading is in radians, a turn in degrees, both

@@ -1,32 +1,32 @@
 //! The gait that a walk shows, if it is unambiguous.
 //!
-//! The movements over quarters of a cycle are compared with those of each gait, with the beginning and the duration
-//! of a cycle that fit best. The best gait is not accepted at once, since a robot differs from every prediction. The
-//! second best has to fit much worse, by the statistical test for two variances.
+//! The movements over quarters of a cycle are compared with the movements that each gait predicts, with the
+//! beginning and the duration of a cycle that fit best. The best gait is not accepted at once, since a robot
+//! differs from every prediction. The second best has to fit much worse, by the statistical test for two variances.
 
 use crate::cycles;
 use crate::gait::Gait;
 use crate::path::PathPoint;
 use crate::trouble::Trouble;
 
-/// Largest misfit of an accepted gait: that of a robot that moves half as far as predicted.
+/// Largest misfit of an accepted gait: the misfit of a robot that moves half as far as predicted.
 const FITS: f64 = 0.25;
-/// Smallest ratio of any other gait's misfit to that of the best: Fisher's F for a probability of 1 %, if both
+/// Smallest ratio of the second best gait's misfit to the best gait's: Fisher's F for a probability of 1 %, if both
 /// variances come from four quarters of a cycle on three axes.
 const CLEAR: f64 = 4.16;
 
 /// The gait that a walk resembles, by its index.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Likeness {
-    /// This gait, unambiguously.
+    /// The walk shows this gait, unambiguously.
     One(usize),
-    /// The first gait best, and the second one nearly as well.
+    /// The first gait fits best, and the second one nearly as well.
     Two(usize, usize),
-    /// No gait, and the reason against the one that fits best.
+    /// No gait fits; the reason against the one that fits best.
     None(Trouble),
 }
 
-/// Compares a path with gaits.
+/// Finds the gait that a path shows.
 pub(crate) fn of(path: &[PathPoint], gaits: &[Gait]) -> Likeness {
     let mut fits: Vec<(f64, usize)> = Vec::new();
     let mut slow = (f64::INFINITY, 1);

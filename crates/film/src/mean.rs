@@ -20,7 +20,7 @@ pub struct Mean {
     pub spread: f64,
     /// Standard error of the mean: the true value is within twice this with a probability of 95 %.
     pub error: f64,
-    /// The part of the error that more cycles do not reduce: that of camera, clock and ruler.
+    /// The part of the error that more cycles do not reduce: the errors of camera, clock and ruler.
     pub common: f64,
 }
 
@@ -63,7 +63,8 @@ pub(crate) fn of(walks: &[Cycles]) -> Mean {
     }
 }
 
-/// The factor that enlarges an error whose spread was estimated with few degrees of freedom.
+/// The factor that enlarges an error whose spread was estimated with few degrees of freedom, so that the true value
+/// lies within two errors with a probability of 95 %.
 pub(crate) fn widening(freedom: usize) -> f64 {
     let (mut low, mut high) = (1.0, 100.0);
     for _ in 0..60 {

@@ -10,7 +10,7 @@ use crate::within::{self, Point};
 /// A measured gait.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
-    /// Distance per cycle in the forward direction at its start, mm.
+    /// Displacement per cycle along the robot's forward direction at the start of the cycle, mm.
     pub forward: Mean,
     /// Drift per cycle to the left, mm.
     pub left: Mean,
@@ -20,7 +20,7 @@ pub struct Measured {
     pub period: [f64; 2],
     /// The movement of each cycle.
     pub cycles: Vec<Travel>,
-    /// The times that separate the cycles of each walk, s.
+    /// The times of the calm phases that separate the cycles of each walk, s.
     pub ends: Vec<f64>,
     /// The mean path within a cycle, with the predicted one.
     pub within: Vec<Point>,
@@ -66,7 +66,7 @@ impl Measured {
         }
     }
 
-    /// Computes the means over the walks of several results of a gait, from one film or several.
+    /// Computes the means over all walks of several results of one gait, from one film or several.
     pub fn together(results: &[Self], gait: &Gait) -> Self {
         let walks = results.iter().flat_map(|result| result.walks.clone());
         Self::of(walks.collect(), gait)

@@ -12,8 +12,9 @@ pub const PAUSE: f64 = 1.0;
 const SIDE: f64 = 30.0;
 /// Number of large steps.
 const FLIPS: usize = 8;
-/// The visits: deg from neutral, and true if the direction is reversed. They go from one side to the other and back
-/// twice, in steps of 15 deg. The direction changes at neutral, where the change moves nothing.
+/// The poses for measuring the servo's angle: deg from neutral, and true if the direction is reversed. They go from
+/// one side to the other and back twice, in steps of 15 deg. The direction changes at neutral, where the change
+/// moves nothing.
 #[rustfmt::skip]
 const VISITS: [(f64, bool); 19] = [
     (15.0, false), (0.0, false),
@@ -22,7 +23,7 @@ const VISITS: [(f64, bool); 19] = [
     (0.0, true), (15.0, true), (30.0, true), (15.0, true), (0.0, true),
     (0.0, false), (15.0, false),
 ];
-/// The small steps, deg, from the last visit and back.
+/// Sizes of the small steps, deg: each goes from the last visited pose toward neutral and back.
 const SWINGS: [f64; 10] = [0.2, 0.4, 0.6, 0.8, 1.0, 1.25, 1.6, 2.0, 2.5, 3.0];
 
 /// An order to the servo.
@@ -44,7 +45,7 @@ impl Order {
     }
 }
 
-/// Makes all orders; the poses are counter-clockwise from neutral, or clockwise if `way` is -1.
+/// Makes all orders. The poses are counter-clockwise from neutral if `side` is 1, clockwise if it is -1.
 pub fn orders(side: f64) -> Vec<Order> {
     let order = |sweep: f64, is_reversed| Order {
         sweep: side * sweep,

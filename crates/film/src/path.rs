@@ -4,7 +4,7 @@ use lizard_contact::{Place, Travel};
 
 use crate::least;
 
-/// Smallest number of pictures to find a place between them.
+/// Smallest number of pictures to which a parabola is fitted.
 const LEAST: usize = 4;
 
 /// The robot's place in a picture.
@@ -21,12 +21,12 @@ pub(crate) fn compose(from: Place, seen: Place) -> Place {
     from.after(seen.travel())
 }
 
-/// The origin as seen from `place`.
+/// Inverts a place: the floor's origin relative to `place`.
 pub(crate) fn inverse(place: Place) -> Place {
     of_travel(Place::START.seen_from(place))
 }
 
-/// Converts a movement into its end, relative to its start.
+/// Converts a movement into the place where it ends, relative to its start.
 pub(crate) fn of_travel(travel: Travel) -> Place {
     Place::START.after(travel)
 }
@@ -50,7 +50,7 @@ pub(crate) fn unwind(seen: &mut [PathPoint]) {
     }
 }
 
-/// The place at a time between two pictures, interpolated.
+/// The place at a time, interpolated between two pictures; `None` before the first or after the last picture.
 pub(crate) fn between(path: &[PathPoint], seconds: f64) -> Option<Place> {
     let after = path.partition_point(|seen| seen.seconds < seconds);
     let b = path.get(after)?;
@@ -65,8 +65,8 @@ pub(crate) fn between(path: &[PathPoint], seconds: f64) -> Option<Place> {
         .then(|| interpolate(a.place, b.place, share))
 }
 
-/// The place at a time, by a parabola through the pictures within `half` seconds of it; `None` if there are no
-/// pictures before or after.
+/// The place at a time, by a parabola fitted to the pictures within `half` seconds of it, or to the four nearest
+/// ones if there are fewer. `None` if there are no pictures before or after.
 pub(crate) fn smoothed_at(path: &[PathPoint], seconds: f64, half: f64) -> Option<Place> {
     let mut begin = path.partition_point(|seen| seen.seconds < seconds - half);
     let mut end = path.partition_point(|seen| seen.seconds <= seconds + half);

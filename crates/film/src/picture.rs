@@ -12,7 +12,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Makes a picture from its rows; `None` if the length of `grey` is not `width * height`.
+    /// Makes a picture from its rows; `None` if the length of `grey` is not `width * height`, or is zero.
     pub fn new(width: usize, height: usize, grey: Vec<u8>) -> Option<Self> {
         let fits = width.checked_mul(height) == Some(grey.len()) && !grey.is_empty();
         fits.then_some(Self {
@@ -22,7 +22,8 @@ impl Picture {
         })
     }
 
-    /// Makes a grey picture from a coloured one with four bytes per pixel: red, green, blue, and one that is ignored.
+    /// Makes a grey picture from a coloured one with four bytes per pixel: red, green, blue, and one that is
+    /// ignored. `None` if the length of `pixels` is not `4 * width * height`, or is zero.
     pub fn of_colours(width: usize, height: usize, pixels: &[u8]) -> Option<Self> {
         let (pixels, rest) = pixels.as_chunks::<4>();
         let grey = pixels
@@ -58,7 +59,8 @@ impl Picture {
         &self.grey
     }
 
-    /// The grey at a point between pixels; beyond the edge, that of the edge.
+    /// The grey at a point, interpolated between pixels; outside the picture, the grey at the nearest point of its
+    /// edge.
     pub fn at(&self, [x, y]: Pixel) -> f64 {
         let x = x.clamp(0.0, (self.width - 1) as f64);
         let y = y.clamp(0.0, (self.height - 1) as f64);

@@ -1,9 +1,9 @@
 //! The scene: the camera's focal length, and the places of strips and camera, found from the tags' corners.
 //!
-//! The first strip is the frame of the floor. The other strip may be anywhere: three unknowns. Light and ink spread,
-//! so every black square is larger or smaller than designed, by the same small length: one more unknown, which the
-//! distance between a strip's tags separates from the scale. If the tilt does not separate focal length from
-//! distance, the size of the deck tag does, since its height is known.
+//! The first strip defines the coordinate axes of the floor. The other strip may be anywhere: three unknowns. Light
+//! and ink spread, so every black square is larger or smaller than designed, by the same small length: one more
+//! unknown, which the distance between a strip's tags separates from the scale. If the tilt does not separate focal
+//! length from distance, the size of the deck tag does, since its height is known.
 
 use lizard_contact::Place;
 use nalgebra::DMatrix;
@@ -66,7 +66,7 @@ impl Scene {
     /// Fits the scene to views.
     ///
     /// # Errors
-    /// Fails if the tags are not arranged as on the sheet.
+    /// Fails if no camera fits the tags, or if their arrangement or size differs from the sheet's.
     pub(crate) fn of(views: &[View], measures: Measures) -> Result<Self, Trouble> {
         let width = measures.size[0] as f64;
         let fits = STARTS
@@ -120,7 +120,8 @@ impl Scene {
         Camera::new(self.focal(), self.measures.size, pose)
     }
 
-    /// The pose of the camera in a picture with all floor tags.
+    /// Finds the camera's pose from the floor tags of a picture; `None` if it does not fit them, as when one is
+    /// covered.
     pub(crate) fn pose(&self, floor: &FloorCorners) -> Option<Pose> {
         let start = start_pose(floor, &self.measures, self.focal())?;
         let model = |pose: &[f64]| {
@@ -136,7 +137,7 @@ impl Scene {
         fit.at.try_into().ok()
     }
 
-    /// The place of the robot by its deck tag.
+    /// Finds the robot's place from the corners of its deck tag; `None` if they do not determine it.
     pub(crate) fn place(&self, camera: &Camera, corners: &[Pixel; 4]) -> Option<Place> {
         let start = deck_start(camera, corners, self.measures.height)?;
         let model = |at: &[f64]| {
@@ -157,7 +158,8 @@ impl Scene {
         })
     }
 
-    /// The height of the deck tag by its size, mm.
+    /// Finds the height of the deck tag from its size in the picture, mm; `None` if its corners do not determine
+    /// it.
     pub(crate) fn height(&self, camera: &Camera, corners: &[Pixel; 4]) -> Option<f64> {
         let [a, b, c] = deck_start(camera, corners, self.measures.height)?;
         let model = |at: &[f64]| {
@@ -193,7 +195,7 @@ fn on_floor(shared: &[f64], scale: f64, id: usize, point: [f64; 2]) -> [f64; 2] 
     strip.on_floor(point)
 }
 
-/// The corners of a tag as they appear, relative to its middle, in designed mm.
+/// The corners of a tag as printed, with the spread of its ink: relative to its middle, in designed mm.
 fn seen_corners(shared: &[f64], scale: f64, id: usize) -> [[f64; 2]; 4] {
     sheet::corners(sheet::edge(id) + 2.0 * shared[1] / scale)
 }
@@ -243,8 +245,10 @@ fn deck_residuals(
         .collect()
 }
 
-/// A first estimate of the deck tag's place: where the rays through its corners reach its height.
+/// A first estimate of the deck tag's place: the intersection of the rays through its corners with the plane at its
+/// height. `None` if there is no such intersection.
 fn deck_start(camera: &Camera, corners: &[Pixel; 4], height: f64) -> Option<[f64; 3]> {
+    // The corners of any square in that plane give the homography from the picture to the plane.
     let square = [
         [-100.0, -100.0],
         [100.0, -100.0],
@@ -259,7 +263,7 @@ fn deck_start(camera: &Camera, corners: &[Pixel; 4], height: f64) -> Option<[f64
     Some([mean(0), mean(1), ahead(1).atan2(ahead(0))])
 }
 
-/// A first estimate of the camera's pose, by the first strip.
+/// A first estimate of the camera's pose, from the first strip.
 fn start_pose(floor: &FloorCorners, measures: &Measures, focal: f64) -> Option<Pose> {
     pose_of(&strip_map(floor, measures, 0)?, focal, measures.size)
 }
@@ -276,7 +280,8 @@ fn strip_map(floor: &FloorCorners, measures: &Measures, strip: usize) -> Option<
     Homography::of_points(&points, &floor[ids].concat())
 }
 
-/// The errors of all corners of all views; without those of the deck tags if `decks` is false.
+/// The errors of all tags' corners in all views, divided by their sigma; only of the floor tags if `decks` is
+/// false.
 fn residuals(at: &[f64], views: &[View], measures: &Measures, decks: bool) -> Vec<f64> {
     let (shared, mut rest) = at.split_at(SHARED);
     let mut all = Vec::new();
@@ -305,7 +310,7 @@ fn residuals(at: &[f64], views: &[View], measures: &Measures, decks: bool) -> Ve
     all
 }
 
-/// Fits all parameters, starting with this focal length.
+/// Fits all parameters, starting with this focal length; `None` if the tags do not determine them.
 fn fit(views: &[View], measures: &Measures, focal: f64) -> Option<Fit> {
     let first = views.first()?;
     let to_floor = strip_map(&first.floor, measures, 0)?.inverse()?;

@@ -39,13 +39,13 @@ pub const DECK_EDGE: f64 = 36.0;
 pub const SPAN: f64 = 200.0;
 /// Length and width of a strip, mm: its tags with a white margin wider than one of their squares.
 pub const STRIP: [f64; 2] = [266.0, 66.0];
-/// Width and length of the deck's card, mm. The tag is at the lower end; the upper end points to the head.
+/// Width and length of the deck's card, mm. The tag is at its lower edge; its upper edge faces the robot's head.
 pub const CARD: [f64; 2] = [50.0, 60.0];
 /// White margin around the deck's tag, mm.
 pub const CARD_MARGIN: f64 = 7.0;
 /// Length of the line that shows the printer's scale, mm.
 pub const RULER: f64 = 100.0;
-/// Word beside the card's arrow: the end of the robot that it points to.
+/// Word beside the card's arrow, which points to the robot's head.
 pub const FORWARD_WORD: &str = "HEAD";
 
 /// The strip of a floor tag, counted from 0.

@@ -17,13 +17,15 @@ use crate::watched::Watched;
 
 /// Time at the beginning during which the board is level, s.
 const LEVEL: f64 = 1.0;
-/// Largest change of the tilt during that time, deg.
+/// Largest tilt of the board in that time, relative to its mean, deg.
 const MOVED: f64 = 1.0;
-/// Standard error of "level", and below, of a tilt found by the camera, deg.
+/// Standard error of the vertical found while the board is level, deg.
 const LEVEL_SIGMA: f64 = 0.3;
+/// Standard error of a tilt found by the camera, deg.
 const TILT_SIGMA: f64 = 0.2;
-/// Smallest slide that counts, mm; below, the part of a slide from which friction is found, mm.
+/// Smallest displacement that counts as a slide, mm.
 const SLID: f64 = 15.0;
+/// Range of displacements from which the friction is found, mm.
 const PART: [f64; 2] = [1.0, 60.0];
 /// Smallest number of pictures of a slide.
 const LEAST: usize = 6;
@@ -31,7 +33,7 @@ const LEAST: usize = 6;
 const ASIDE: f64 = 30.0;
 /// Largest rate at which the board is lifted, deg/s.
 const LIFTED: f64 = 15.0;
-/// Time around a picture in which its tilt is averaged, s.
+/// Half of the time over which a picture's tilt is averaged, s.
 const AROUND: f64 = 0.15;
 
 /// A reason why a film of a tilted board cannot be measured.
@@ -221,7 +223,7 @@ impl Slide {
     }
 }
 
-/// Checks that the robot slides downhill, with its head or its tail in front.
+/// Checks that the robot slides downhill, head first or tail first.
 fn check_ways(moment: &Moment, way: [f64; 2]) -> Result<(), SlideTrouble> {
     let beside = angle_between(way[1].atan2(way[0]), moment.down);
     if beside > ASIDE {
@@ -240,7 +242,7 @@ fn angle_between(heading: f64, [x, y]: [f64; 2]) -> f64 {
     sin.atan2(cos).to_degrees().abs()
 }
 
-/// The mean place of the robot.
+/// The mean position of the robot on the board, mm.
 fn mean(moments: &[Moment]) -> [f64; 2] {
     [0, 1].map(|i| moments.iter().map(|moment| moment.at[i]).sum::<f64>() / moments.len() as f64)
 }
@@ -267,7 +269,8 @@ fn smooth(moments: &[Moment]) -> Vec<f64> {
     moments.iter().map(one).collect()
 }
 
-/// The coefficient of friction in a slide: each point is a time in s, a tilt in rad and a place in mm.
+/// The coefficient of sliding friction, fitted to the points of a slide: each is a time in s, a tilt in rad and a
+/// displacement in mm.
 fn sliding(points: &[[f64; 3]]) -> Result<Figure, SlideTrouble> {
     let few = SlideTrouble::FewPictures {
         pictures: points.len(),
@@ -308,8 +311,8 @@ fn sliding(points: &[[f64; 3]]) -> Result<Figure, SlideTrouble> {
     })
 }
 
-/// The time at which a slide begins, with its standard error, s: found by its acceleration, backward from the first
-/// picture that shows a movement.
+/// The time at which a slide begins, with its standard error, s: extrapolated backward, by the acceleration, from
+/// the first picture that shows a movement. `before` is the time of the previous picture.
 fn begin(points: &[[f64; 3]], friction: f64, before: f64) -> (f64, f64) {
     let [seconds, tilt, slid] = points[0];
     let acceleration = 1000.0 * GRAVITY * (tilt.sin() - friction * tilt.cos());

@@ -9,7 +9,7 @@ use crate::figure::Figure;
 use crate::least;
 use crate::mean::widening;
 
-/// Range of the shares of a step in which pictures count; at the upper end the servo begins to brake.
+/// Shares of a step between which pictures are used; beyond the upper one the servo begins to brake.
 const PARTS: [f64; 2] = [0.02, 0.85];
 /// Expected standard deviation of the logarithm of the time constant.
 const SPIN_UP_SIGMA: f64 = 0.7;
@@ -19,8 +19,9 @@ const TOLD: f64 = 0.25;
 const MOTOR: f64 = 0.02;
 /// First estimate of the error of an angle in one picture, deg; the residuals give the true one.
 const SIGMA: f64 = 0.3;
-/// Smallest number of steps with two pictures or more; below, that of pictures, without the first of each step.
+/// Smallest number of steps with two pictures or more in a group.
 const LEAST_STEPS: usize = 2;
+/// Smallest number of pictures in a group, not counting the first picture of each step.
 const LEAST_PICTURES: usize = 6;
 
 /// A large step: times in s, and angles in deg from the start of the step.
@@ -28,7 +29,7 @@ const LEAST_PICTURES: usize = 6;
 pub(crate) struct Step(Vec<(f64, f64)>);
 
 impl Step {
-    /// Selects the pictures that count, for a step of `way` deg.
+    /// Selects the pictures that the fit uses, for a step of `way` deg.
     pub(crate) fn new(pictures: impl Iterator<Item = (f64, f64)>, way: f64) -> Self {
         let [low, high] = PARTS.map(|part| part * way.abs());
         let turned = pictures.map(|(time, angle)| (time, angle * way.signum()));
@@ -48,7 +49,8 @@ pub(crate) struct Rates {
 }
 
 impl Rates {
-    /// Fits groups of steps, each group with its own rate; `None` if there are too few pictures.
+    /// Fits groups of steps, each group with its own rate; `None` if there are too few pictures or the fit fails.
+    /// `spin_up` is the expected time constant, s.
     pub(crate) fn of(groups: &[&[Step]], spin_up: f64) -> Option<Self> {
         let mut start = Vec::new();
         for group in groups {
@@ -128,7 +130,8 @@ fn pace(step: &Step) -> f64 {
     (b - a) / (to - from)
 }
 
-/// The angle that a motor has turned after a time, deg.
+/// The angle that a motor has turned a time after its start at full torque, deg; `constant` is its time constant,
+/// s.
 fn turned(rate: f64, constant: f64, seconds: f64) -> f64 {
     if seconds <= 0.0 {
         return 0.0;

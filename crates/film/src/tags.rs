@@ -26,13 +26,13 @@ pub struct Tag {
     pub corners: [Pixel; 4],
 }
 
-/// Finds the tags of the sheet. If an id appears twice, both tags are returned.
+/// Finds the tags of the sheet in a picture. If an id appears twice, both tags are returned.
 pub fn read(picture: &Picture) -> Vec<Tag> {
     tags(picture, blobs::quads(picture, blobs::reach(picture)))
 }
 
-/// Finds the tag of an id near its last place. The result is the same as that of [`read`] if the tag moved by less
-/// than [`MOVES`] of its size.
+/// Finds the tag of an id near its last place; `None` if it is not there. Finds it as [`read`] does if it moved by
+/// less than [`MOVES`] of its size.
 pub(crate) fn near(picture: &Picture, id: usize, last: &[Pixel; 4]) -> Option<Tag> {
     let reach = blobs::reach(picture);
     let size = picture.size();
@@ -60,7 +60,8 @@ fn tags(picture: &Picture, quads: impl IntoIterator<Item = Quad>) -> Vec<Tag> {
         .collect()
 }
 
-/// Reads the code of a square, starting at each of its corners in turn.
+/// Reads the code of a square, starting at each of its corners in turn; `None` if no tag of the sheet has this
+/// code.
 fn decode(picture: &Picture, square: &Square) -> Option<Tag> {
     (0..4).find_map(|turn| {
         let corners = std::array::from_fn(|i| square.corners[(i + turn) % 4]);

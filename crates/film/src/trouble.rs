@@ -30,7 +30,7 @@ pub enum Trouble {
         /// Number of the picture, from 1.
         number: usize,
     },
-    /// No tag of the sheet in any picture.
+    /// No picture shows a tag of the sheet.
     #[error(
         "no picture has a tag of the sheet: film from above and near enough, without glare, in more light if the \
          pictures are dark, and not mirrored"
@@ -82,7 +82,7 @@ pub enum Trouble {
          printed with another scale in each direction?"
     )]
     TagSize {
-        /// Edge of a tag as computed from their distance, mm.
+        /// Edge of a floor tag, computed from the known distance between a strip's tags, mm.
         edge: f64,
     },
     /// The deck tag is not at its given height.
@@ -132,10 +132,10 @@ pub enum Trouble {
          or, for a film in slow motion, the rate at which it was taken with --fps"
     )]
     AnotherPace {
-        /// The multiple.
+        /// Measured duration of a cycle divided by the predicted one.
         times: u32,
     },
-    /// The path differs from that of the gait.
+    /// The path differs from the gait's predicted path.
     #[error(
         "the path is not that of this gait in cycles of {period:.2} s: was it another gait, another pace, several gaits \
          without a rest between them, or does the arrow of the deck's card not show to the head?"
@@ -153,7 +153,7 @@ pub enum Trouble {
         /// Time since the first picture, s.
         seconds: f64,
     },
-    /// There is no gait that moves the robot, to compare with.
+    /// No gait moves the robot, so there is none to compare with.
     #[error("there is no gait that goes anywhere to compare with")]
     NoGait,
 }

@@ -1,4 +1,5 @@
-//! A servo measured in a film: how far it turns for its pulses, how fast, and which small steps it ignores.
+//! A servo measured in a film: the angle that it turns for its pulses, its rate, and the small steps that it
+//! ignores.
 //!
 //! The servo gets the steps of [`crate::orders`] at even intervals, but their time in the film is unknown. It is
 //! found by the angles at which the horn rests, which must depend linearly on the orders.
@@ -11,9 +12,9 @@ use crate::path::PathPoint;
 use crate::spin::{Rates, Step};
 use crate::turns_trouble::TurnsTrouble;
 
-/// Part of an order's time in which the horn rests.
+/// Part of an order's time in which the horn rests, as shares of that time.
 const REST: [f64; 2] = [0.45, 0.92];
-/// Interval of the beginnings that are tried, s.
+/// Step of the search for the time of the first order, as a share of the time from one order to the next.
 const TRIES: f64 = 0.02;
 /// Smallest share of the orders whose rest must be visible.
 const SEEN: f64 = 0.9;
@@ -23,7 +24,7 @@ const HALF_WAY: f64 = 0.1;
 const TURNED: f64 = 5.0;
 /// Largest share of the rests' variance that the orders do not explain.
 const UNEXPLAINED: f64 = 0.02;
-/// Other durations of an order that are tried, as multiples.
+/// Other times from one order to the next that are tried, as multiples of the planned time.
 const MULTIPLES: [f64; 5] = [0.25, 0.5, 2.0, 4.0, 8.0];
 /// Largest share of the slew limit up to which a rate is the servo's own.
 const OWN_RATE: f64 = 0.8;
@@ -31,8 +32,9 @@ const OWN_RATE: f64 = 0.8;
 const CAMERA: f64 = 0.002;
 /// Standard error of a rate because the motor model is simple, as a share: a real motor does not follow it exactly.
 const MOTOR: f64 = 0.003;
-/// Smallest angle that counts as a movement, deg; below, the same as a multiple of its standard error.
+/// Smallest angle that counts as a movement, deg.
 const MOVED: f64 = 0.05;
+/// Smallest angle that counts as a movement, as a multiple of its standard error.
 const MOVED_SIGMAS: f64 = 3.0;
 /// Largest movement of a small step that is used for the dead band, deg: after a larger one the servo overshoots.
 const SMALL: f64 = 1.6;
@@ -64,7 +66,7 @@ pub struct DeadBand {
 /// A measured servo.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Turns {
-    /// Angle that the servo turns per deg of robot.toml; negative if it turns the other way.
+    /// Angle that the servo turns per deg of robot.toml; negative if it turns in the opposite direction.
     pub gain: Figure,
     /// Difference of the angles at which the servo stops after approaching from either side, in robot.toml's deg.
     pub hysteresis: Figure,
@@ -90,7 +92,7 @@ impl Turns {
     /// Measures a servo by the path of the card on its horn.
     ///
     /// # Errors
-    /// Fails if the horn does not turn as ordered, or is visible too rarely.
+    /// Fails if the horn does not turn as ordered or is visible too rarely, or if the rate is near the slew limit.
     pub fn of(path: &[PathPoint], jig: Jig) -> Result<Self, TurnsTrouble> {
         let turns = Path::new(path);
         let orders = orders::orders(jig.way);
@@ -125,11 +127,13 @@ impl Turns {
         })
     }
 
-    /// The torque at a stall, in the unit of `torque`: the rate falls linearly with the torque. The load pulls in one
-    /// direction only; it is the direction in which the servo becomes slower.
+    /// Computes the stall torque, in the unit of `torque`, from this measurement and that of the same servo under a
+    /// load of `torque`: the rate falls linearly with the torque. The load pulls in one direction only: the
+    /// direction in which it slows the servo down more.
     ///
     /// # Errors
-    /// Fails if the load does not slow the servo down.
+    /// Fails if there are too few pictures, if the load does not slow the servo down, or if `loaded` seems to be
+    /// the measurement without the load.
     pub fn stall(&self, loaded: &Self, torque: f64) -> Result<Figure, TurnsTrouble> {
         let few = TurnsTrouble::FewPictures {
             rate: self.pictures.min(loaded.pictures),
@@ -177,7 +181,8 @@ fn of_motor(rate: Figure) -> Figure {
     }
 }
 
-/// Gain and hysteresis, found by the visits: all are moves of one length, after which the horn stops in the same way.
+/// Fits gain and hysteresis to the angles at which the horn rests after the visits; `None` if too few are visible.
+/// All visits are reached by moves of the same length, so the horn stops in the same way.
 fn line(orders: &[Order], rests: &[Option<f64>]) -> Option<[Figure; 2]> {
     let seen: Vec<(f64, f64, f64)> = orders::visits()
         .filter_map(|i| {
@@ -225,7 +230,7 @@ impl Path {
         Self { turns, sums }
     }
 
-    /// Pictures per second, without gaps from missing pictures.
+    /// Pictures per second, from the median interval, so that missing pictures do not count.
     fn rate(&self) -> f64 {
         let gaps = self.turns.windows(2).map(|pair| pair[1].0 - pair[0].0);
         let mut gaps: Vec<f64> = gaps.collect();
@@ -239,20 +244,21 @@ impl Path {
         at(from)..at(to)
     }
 
-    /// The pictures in which the horn rests after an order.
+    /// The indices of the pictures in which the horn rests after an order.
     fn resting(&self, begin: f64, pause: f64, order: usize) -> std::ops::Range<usize> {
         let [from, to] = REST.map(|part| begin + pause * (order as f64 + part));
         self.within(from, to)
     }
 
-    /// The angle at which the horn rests after an order.
+    /// The mean angle at which the horn rests after an order, deg; `None` if no picture shows it.
     fn rest(&self, begin: f64, pause: f64, order: usize) -> Option<f64> {
         let seen = self.resting(begin, pause, order);
         let sum = self.sums[seen.end] - self.sums[seen.start];
         (!seen.is_empty()).then(|| sum / seen.len() as f64)
     }
 
-    /// The share of the rests' variance that the orders do not explain, if the first order is at `begin`.
+    /// The share of the rests' variance that the orders do not explain, if the first order is at `begin`; `None` if
+    /// too few rests are visible.
     fn unexplained(&self, orders: &[Order], begin: f64, pause: f64) -> Option<f64> {
         let pair = |i: usize| Some((orders[i].pulse_angle(), self.rest(begin, pause, i)?));
         let pairs: Vec<(f64, f64)> = (0..orders.len()).filter_map(pair).collect();
@@ -270,7 +276,7 @@ impl Path {
         Some(1.0 - sums[1] * sums[1] / (sums[0] * sums[2]).max(1e-9))
     }
 
-    /// The beginning with the smallest unexplained share, and that share.
+    /// Finds the time of the first order for which the unexplained share is smallest; returns both.
     fn best(&self, orders: &[Order], pause: f64) -> Option<(f64, f64)> {
         let (first, last) = (self.turns.first()?.0, self.turns.last()?.0);
         let end = last - pause * (orders.len() as f64 - 1.0 + REST[0]);
@@ -282,7 +288,7 @@ impl Path {
             .map(|(left, begin)| (begin, left))
     }
 
-    /// The time of the first order, s.
+    /// Finds the time of the first order, s.
     fn begin(&self, orders: &[Order]) -> Result<f64, TurnsTrouble> {
         let angles = || self.turns.iter().map(|(_, angle)| *angle);
         let turn = angles().fold(f64::MIN, f64::max) - angles().fold(f64::MAX, f64::min);
@@ -311,7 +317,7 @@ impl Path {
         })
     }
 
-    /// The time of the first order, refined by the times at which the large steps are half complete.
+    /// Refines the time of the first order, s, by the times at which the large steps are half complete.
     fn refined(&self, begin: f64) -> f64 {
         let half_way = |i: usize| {
             let (from, to) = (self.rest(begin, PAUSE, i - 1)?, self.rest(begin, PAUSE, i)?);
@@ -345,7 +351,7 @@ impl Path {
         steps
     }
 
-    /// The dead band, found by the small steps: a step moves less than ordered by this width.
+    /// Finds the dead band by the small steps: the servo turns less than ordered by the width of the dead band.
     fn dead_band(
         &self,
         begin: f64,
@@ -380,7 +386,8 @@ impl Path {
             if !has_moved {
                 still = still.max(ordered.abs());
             } else if had_moved && moved < SMALL {
-                // After a movement the servo stands at the edge of its dead band; before, it may be anywhere in it.
+                // After a movement the servo stands at the edge of its dead band; before one, it may be anywhere
+                // within it.
                 lost.push(ordered.abs() - moved);
             }
         }

@@ -56,7 +56,7 @@ pub enum TurnsTrouble {
         /// Slew limit of the orders, deg/s.
         slew: f64,
     },
-    /// The rates to both sides differ more without the load than with it.
+    /// The rates in both directions differ more without the load than with it.
     #[error(
         "the servo's rates to both sides differ more without the load than with it: were the two films swapped?"
     )]

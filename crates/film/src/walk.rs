@@ -8,7 +8,7 @@ use crate::cycles::Cycles;
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Walk {
     pub cycles: Cycles,
-    /// The variances of a mean cycle that result from those of the scene: forward, left, turn.
+    /// Variances of the mean cycle that result from the covariance of the scene: forward, left, turn.
     pub scene_variances: [f64; 3],
     /// Standard error of all lengths, as a share.
     pub scale: f64,
@@ -17,7 +17,7 @@ pub(crate) struct Walk {
 }
 
 impl Walk {
-    /// The errors of a mean cycle that all its cycles share: those of ruler and height, clock and camera.
+    /// The errors of the mean cycle that all its cycles share: the errors of ruler and height, clock and camera.
     pub(crate) fn common_errors(&self) -> [f64; 3] {
         let ways = parts(&self.cycles.travels);
         let [period, error] = self.cycles.period;

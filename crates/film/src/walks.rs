@@ -16,8 +16,8 @@ const LEAST: usize = 3;
 /// Ratio of the shortest rest to the longest time for which a gait stands still.
 const MORE: f64 = 1.4;
 
-/// Finds the times, s, from the middle of one rest to that of the next between which the robot moves away. A rest
-/// lasts `rest` seconds or more.
+/// Finds the walks: the times, s, in which the robot moves away between two rests, each extended by half of `rest`
+/// at its beginning and its end. A rest lasts `rest` seconds or more.
 pub(crate) fn of(path: &[PathPoint], rest: f64) -> Vec<[f64; 2]> {
     let mut rests = vec![false; path.len()];
     for (first, seen) in path.iter().enumerate() {
@@ -44,7 +44,7 @@ pub(crate) fn of(path: &[PathPoint], rest: f64) -> Vec<[f64; 2]> {
         let walk = &path[next.saturating_sub(1)..(end + 1).min(path.len())];
         let [first, last] = [0, walk.len() - 1].map(|i| walk[i].seconds);
         if !is_rest && moves_away(walk) {
-            // The gait may begin and end with a time in which the robot stands still.
+            // The gait may begin and end with a time in which the robot stands still, which looks like a rest.
             let from = path[0].seconds.max(first - rest / 2.0);
             walks.push([from, path[path.len() - 1].seconds.min(last + rest / 2.0)]);
         }
@@ -53,7 +53,7 @@ pub(crate) fn of(path: &[PathPoint], rest: f64) -> Vec<[f64; 2]> {
     walks
 }
 
-/// The shortest rest between two walks of these gaits, s: longer than any standstill within their cycles.
+/// The shortest time of a rest between two walks of these gaits, s: longer than any standstill within their cycles.
 pub fn rest(gaits: &[Gait]) -> f64 {
     let longest = gaits.iter().map(longest_still).fold(0.0, f64::max);
     (longest * MORE).max(REST)
@@ -75,7 +75,7 @@ fn longest_still(gait: &Gait) -> f64 {
     (0..count).map(still).fold(0.0, f64::max)
 }
 
-/// True if the places differ no more than those in pictures of a robot at rest.
+/// True if the places differ no more than the places of a robot at rest do from picture to picture.
 fn is_still(path: &[PathPoint]) -> bool {
     let count = path.len() as f64;
     let moves: Vec<[f64; 3]> = path

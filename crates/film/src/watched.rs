@@ -14,8 +14,9 @@ use crate::trouble::Trouble;
 use crate::walk::{Walk, parts};
 use crate::{walks, within};
 
-/// Standard deviations of the user's measurements: of the deck tag's height, mm, and of the ruler, as a share.
+/// Standard deviation of the user's measurement of the deck tag's height, mm.
 const HEIGHT_SIGMA: f64 = 1.0;
+/// Standard deviation of the user's measurement of the ruler, as a share.
 const RULER_SIGMA: f64 = 0.001;
 
 /// The camera of a watched film.
@@ -70,7 +71,7 @@ impl Watched {
     /// Measures a gait between two times, s, or in the entire film.
     ///
     /// # Errors
-    /// Fails if the path in that time differs from that of the gait, or is too short.
+    /// Fails if the path in that time differs from the gait's predicted path, or is too short.
     pub fn measure(&self, gait: &Gait, during: Option<[f64; 2]>) -> Result<Measured, Trouble> {
         let path = self.part(during);
         let cycles = cycles::find(path, gait)?;
@@ -87,8 +88,8 @@ impl Watched {
         Ok(Measured::of(vec![walk], gait))
     }
 
-    /// Finds the walks, each from the middle of one rest to that of the next, s. The robot rests if it stands still
-    /// for `rest` seconds; that should be no less than [`rest`](crate::rest) returns.
+    /// Finds the walks, each as the times of its beginning and its end, s, extended by half of `rest`. The robot
+    /// rests if it stands still for `rest` seconds; that should be no less than [`rest`](crate::rest) returns.
     pub fn walks(&self, rest: f64) -> Vec<[f64; 2]> {
         walks::of(&self.path, rest)
     }
@@ -112,7 +113,7 @@ impl Watched {
         &self.path[begin..end.max(begin)]
     }
 
-    /// The variances of a mean cycle that result from those of the scene: forward, left, turn.
+    /// The variances of the mean cycle that result from the covariance of the scene: forward, left, turn.
     fn doubts(&self, cycles: &Cycles) -> [f64; 3] {
         // A camera that moves has its own pose in each picture, so only the five shared parameters count.
         let count = if self.sight.moved { 5 } else { 11 };

@@ -27,7 +27,7 @@ pub struct Point {
 }
 
 impl Point {
-    /// The measured place minus the predicted one, in standard errors.
+    /// The measured place minus the predicted one, in standard errors: forward, left, turn.
     pub fn differs(&self) -> [f64; 3] {
         [0, 1, 2].map(|axis| {
             let Mean { mean, error, .. } = self.measured[axis];
@@ -36,7 +36,7 @@ impl Point {
     }
 }
 
-/// Compares the places of pictures with a gait.
+/// Computes the deviation of each picture within a cycle from the predicted path.
 pub(crate) fn offs(path: &[PathPoint], cycles: &Cycles, gait: &Gait) -> Vec<Deviation> {
     let mut offs = Vec::new();
     for (cycle, pair) in cycles.begins.windows(2).enumerate() {
@@ -56,7 +56,7 @@ pub(crate) fn offs(path: &[PathPoint], cycles: &Cycles, gait: &Gait) -> Vec<Devi
     offs
 }
 
-/// The mean path over walks. A part of the cycle with too few pictures has no point.
+/// Computes the mean path within a cycle over walks. A part of the cycle with too few pictures has no point.
 pub(crate) fn points(walks: &[Walk], gait: &Gait) -> Vec<Point> {
     let pictures = walks
         .iter()
@@ -82,7 +82,7 @@ fn own(mean: Mean) -> f64 {
     (mean.error.powi(2) - mean.common.powi(2)).max(0.0).sqrt()
 }
 
-/// The point for a part of the cycle.
+/// Computes the point of one of `count` parts of the cycle; `None` if too few pictures show that part.
 fn point(walks: &[Walk], gait: &Gait, part: usize, count: usize) -> Option<Point> {
     let phase = (part as f64 + 0.5) / count as f64;
     let predicted = parts(gait.at(phase).travel());
@@ -114,7 +114,7 @@ fn point(walks: &[Walk], gait: &Gait, part: usize, count: usize) -> Option<Point
     })
 }
 
-/// The mean difference in a part of the cycle, for each cycle that has a picture there.
+/// The mean deviation in a part of the cycle, for each cycle that has a picture of that part.
 fn in_cycles(walk: &Walk, part: usize, count: usize, axis: usize) -> Vec<f64> {
     let is_here = |off: &&Deviation| (off.phase * count as f64) as usize == part;
     let cycle = |cycle: usize| {

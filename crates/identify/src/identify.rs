@@ -1,9 +1,9 @@
 //! The fit of all keys, and the choice of the keys whose value changes.
 //!
 //! First all keys are free. The standard errors of this fit are the ones that are reported, since they trust none
-//! of the file's values. Then keys return to the file's value one by one: always the key that is nearest to it in
-//! units of its error, as long as that distance is below two. After each step the free keys adjust, so of two keys
-//! with the same effect one explains what both have to explain.
+//! of the file's values. Then keys return to the file's value one by one: always the key that is nearest to its
+//! file value in units of its error, as long as that distance is below two. After each step the free keys adjust,
+//! so if two keys have the same effect, one of them explains what both have to explain.
 
 use lizard_robot::{CheckedGait, Robot, Travel};
 use nalgebra::DMatrix;
@@ -18,22 +18,22 @@ use crate::way::MeasuredMovement;
 
 /// Keys for which the model is least linear near the file's value.
 const NONLINEAR_KEYS: [usize; 3] = [PLAY, TWIST, RATIO];
-/// Distance from the file's value, in standard errors, from which on a key takes its new value.
+/// Least distance from the file's value, in standard errors, at which a key takes its new value.
 const MIN_DISTANCE_ERRORS: f64 = 2.0;
-/// Least rise of the sum of squares that counts when a key is moved by [`MOVES`] errors; a smaller one may be the
-/// model's roughness. It limits the growth of an error to a factor of four.
+/// Least rise of the sum of squares that counts when a key is moved by [`MIN_DISTANCE_ERRORS`] standard errors; a
+/// smaller rise may be the model's roughness. This limits the growth of an error to a factor of four.
 const LEAST_RISE: f64 = 0.25;
 /// Largest standard error of a key that counts as determined, as a share of its prior standard deviation.
 const MAX_ERROR_SHARE: f64 = 0.5;
 /// Correlation of errors above which two keys are reported as hard to distinguish.
 const MIN_CORRELATION: f64 = 0.8;
 
-/// Runs a function for the indices from 0 up to a count, one after another or on all cores, and returns the results
-/// in order.
+/// A function that calls its second argument for the indices from 0 up to the first argument, one after another or
+/// on all cores, and returns the results in order.
 pub type RunAll<'a> = &'a dyn Fn(usize, &(dyn Fn(usize) -> Travel + Sync)) -> Vec<Travel>;
 
-/// Identifies the keys of a robot from its measured movements. `each` runs the gaits of the model: some hundreds, a
-/// tenth of a second each.
+/// Identifies the keys of a robot from its measured movements. The last argument runs the gaits of the model: some
+/// hundreds, a tenth of a second each.
 ///
 /// # Errors
 /// Fails for a gait that the robot does not have or that moves no servo, for figures that are not finite or out of
@@ -82,7 +82,7 @@ pub fn identify(
     solve(&ways, start, &predict)
 }
 
-/// Finds the keys with which a model reproduces the measured movements.
+/// Finds the keys with which the model `predict` reproduces the measured movements. `start` are the file's values.
 pub(crate) fn solve(
     ways: &[MeasuredMovement],
     start: Values,
@@ -159,12 +159,12 @@ struct Fit {
     explains: bool,
 }
 
-/// Fits all unknowns.
+/// Fits all unknowns, from several starts if the first fit is poor.
 ///
 /// The model is not linear: which feet carry the body changes with the foot that is too long, and small play may
-/// have no effect at all. So a fit that leaves a larger sum of squares than a correct model does on average starts
-/// again with those keys far to either side. A sum below the limit of a correct model is not enough, since a local
-/// minimum may reach that, too.
+/// have no effect at all. So a fit that leaves a larger sum of squares than a correct model does on average is
+/// repeated from starts in which one of the nonlinear keys is far above or below the file's value. A sum below the
+/// limit of a correct model is not enough, since a local minimum may reach that limit, too.
 fn fit_all(problem: &Problem) -> Result<Fit, Trouble> {
     let all: Vec<usize> = (0..UNKNOWNS).collect();
     let before = problem.start_unknowns();
@@ -206,10 +206,10 @@ fn fit_all(problem: &Problem) -> Result<Fit, Trouble> {
 
 /// Standard errors of a fit of all unknowns.
 ///
-/// The errors from the derivatives hold if the model is linear. It has folds: a foot that is a little longer takes
-/// over a load, and an even longer one changes nothing more. So each key is moved by two errors to either side, and
-/// the others follow by their correlation with it. In a linear model the sum of squares would rise by four; where
-/// it rises less, the error is enlarged accordingly.
+/// The errors from the derivatives hold only for a linear model. The contact model has folds: a foot that is a
+/// little longer takes over a load, and an even longer one changes nothing more. So each key is moved by two errors
+/// in both directions, and the others follow by their correlation with it. In a linear model the sum of squares
+/// would rise by four; where it rises less, the error is enlarged accordingly.
 fn errors(problem: &Problem, full: &Solution) -> [f64; UNKNOWNS] {
     let least = problem.cost(&full.at);
     std::array::from_fn(|i| {
@@ -236,7 +236,8 @@ fn freedom(problem: &Problem, full: &Solution) -> f64 {
     problem.figures() as f64 - told.sum::<f64>()
 }
 
-/// Returns keys to the file's values until every free key is at least [`MOVES`] errors from its own.
+/// Returns keys to the file's values until every free key differs from its file value by at least
+/// [`MIN_DISTANCE_ERRORS`] standard errors.
 fn choose(
     problem: &Problem,
     full: &Solution,
@@ -253,7 +254,7 @@ fn choose(
         }
     }
     loop {
-        // The linear model comes first, since it costs nothing.
+        // The linear model comes first, since it needs no run of the gaits.
         while let Some((key, verdict)) = next_to_hold(&verdicts, &guess, &before, errors) {
             verdicts[key] = verdict;
             hold(key, &before, &mut guess, &mut covariance);
@@ -272,7 +273,7 @@ fn choose(
     }
 }
 
-/// The free key to hold next, and the reason.
+/// The next key to return to the file's value, and the reason; `None` if all free keys may keep their new values.
 fn next_to_hold(
     verdicts: &[Verdict; COUNT],
     at: &[f64; UNKNOWNS],
@@ -289,7 +290,7 @@ fn next_to_hold(
     Some((low, Verdict::Impossible(at[low])))
 }
 
-/// Holds a key at the file's value, and lets the others follow by their correlation with it.
+/// Holds a key at the file's value, and moves the other unknowns according to their correlation with it.
 fn hold(
     key: usize,
     before: &[f64; UNKNOWNS],

@@ -7,7 +7,7 @@ use lizard_robot::{Ground, plausible_range};
 pub struct Key {
     /// Full name in robot.toml.
     pub name: &'static str,
-    /// Index of the number if the key is a list.
+    /// Index of the number in the key's list; `None` if the key is a single number.
     pub(crate) list_index: Option<usize>,
     /// Meaning of the number, in words.
     pub meaning: &'static str,
@@ -15,7 +15,7 @@ pub struct Key {
     pub unit: &'static str,
     /// Another method to measure the number, in words.
     pub other_method: &'static str,
-    /// Name of the assumption that gives the plausible range.
+    /// Name of the assumption whose plausible range is the key's.
     assumed: &'static str,
     /// Step of the numerical derivative: large compared with the roughness of a model with dead bands and sticking
     /// pads, small compared with its curvature.
@@ -110,9 +110,11 @@ pub const KEYS: [Key; COUNT] = [
     },
 ];
 
-/// Indices in [`KEYS`] of the keys that need special treatment.
+/// Index in [`KEYS`] of the play of a leg.
 pub(crate) const PLAY: usize = 1;
+/// Index in [`KEYS`] of the excess length of the front left foot.
 pub(crate) const TWIST: usize = 4;
+/// Index in [`KEYS`] of the ratio of the friction backward to the friction forward.
 pub(crate) const RATIO: usize = 6;
 
 impl Key {
@@ -133,7 +135,7 @@ impl Key {
         *(self.field)(ground) = value;
     }
 
-    /// Standard deviation of the value before anything is measured: half of its plausible range.
+    /// Standard deviation of the value before anything is measured: half of the width of its plausible range.
     pub fn prior_error(&self) -> f64 {
         let [low, high] = plausible_range(self.assumed).expect("a test looks for each");
         (high - low) / 2.0

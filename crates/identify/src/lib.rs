@@ -3,13 +3,13 @@
 //! Some keys are assumptions until the robot stands on its floor: the play of its legs, the grain of its pads, a
 //! foot that is too long, the mass centre, the mounting of the legs. A film shows how far the robot moves in a
 //! cycle of a gait. Each key changes the gaits in different proportions, so several gaits together determine the
-//! keys. [`identify`] finds them by weighted least squares ([`KEYS`] lists them), together with the place of the
-//! card with the tag on the deck ([`Card`]), whose error would otherwise look like drift.
+//! keys. [`identify`] finds them by weighted least squares ([`KEYS`] lists them), together with the position of the
+//! tag's card on the deck ([`Card`]); an error of that position would otherwise look like drift.
 //!
 //! A key that the movements do not determine keeps its value. A key whose standard error stays above half of its
-//! prior one counts as unknown ([`Verdict::Untold`]), a key that would move by less than two errors as right
-//! ([`Verdict::Right`]). If the model deviates from the movements by more than their errors, the errors of all keys
-//! grow in proportion ([`Goodness`]). [`Identified::text`] writes the new robot.toml.
+//! prior one counts as unknown ([`Verdict::Undetermined`]); a key that would move by less than two standard errors
+//! counts as right ([`Verdict::Unchanged`]). If the model deviates from the movements by more than their errors,
+//! the errors of all keys grow in proportion ([`Goodness`]). [`Identified::text`] writes the new robot.toml.
 //!
 //! The crate starts no thread, and reads, stores and prints nothing.
 //!
@@ -18,7 +18,7 @@
 //! single friction ratio.
 //!
 //! # Units
-//! mm and degrees; movements are those of one cycle, in the robot's frame at its beginning.
+//! mm and degrees; movements are those of one cycle, in the robot's frame at the beginning of the cycle.
 
 mod card;
 mod chi_square;

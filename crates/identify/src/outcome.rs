@@ -9,13 +9,13 @@ use crate::way::MeasuredMovement;
 pub struct Identified {
     /// The keys in the order of [`crate::KEYS`].
     pub keys: Vec<Found>,
-    /// The place of the card, and the standard errors of its parameters.
+    /// The position of the card, and the standard errors of its parameters.
     pub card: [Card; 2],
     /// Pairs of keys whose errors are correlated by more than 0.8, with the correlation.
     pub correlated: Vec<(&'static Key, &'static Key, f64)>,
     /// Agreement of the model with the measured movements.
     pub goodness: Goodness,
-    /// The measured movements beside the model's.
+    /// The measured movements beside those of the model.
     pub rows: Vec<Row>,
 }
 
@@ -52,14 +52,15 @@ pub enum Verdict {
 pub struct Goodness {
     /// Number of measured figures.
     pub figures: usize,
-    /// Sum of squares of the differences in standard errors: with the file's values, with the new ones, and with
-    /// all keys free.
+    /// Sum of squares of the differences in standard errors: with the file's values, with the new values, and
+    /// with all keys free.
     pub chi_square: [f64; 3],
-    /// Degrees of freedom: the figures less those that the fit of all keys used up.
+    /// Degrees of freedom: the number of figures less those that the fit of all keys used up.
     pub freedom: f64,
     /// Sum of squares that 1 % of correct models exceed; 0 without a degree of freedom.
     pub limit: f64,
-    /// True unless fewer than 1 % of correct models differ as much from the measurements.
+    /// True if the model explains the measurements: with all keys free, the sum of squares is not above the limit
+    /// that 1 % of correct models exceed, or there is no degree of freedom.
     pub explains: bool,
     /// Factor by which all errors were widened.
     pub widened: f64,
@@ -67,11 +68,11 @@ pub struct Goodness {
     pub worst: (usize, usize, f64),
 }
 
-/// A measured movement beside the model's.
+/// A measured movement beside that of the model.
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// The measured movement. A part that is undetermined, since two feet pull against two, has an infinite error
-    /// and no weight.
+    /// The measured movement. A part that is undetermined, because two feet pull against the other two, has an
+    /// infinite error and no weight.
     pub way: MeasuredMovement,
     /// The model's movement with the file's values.
     pub before: [f64; 3],
@@ -88,7 +89,7 @@ impl Identified {
 }
 
 impl Found {
-    /// Number of decimals of the value: as many as show two digits of the error.
+    /// Number of decimals of the value: enough to show two digits of the standard error.
     pub fn digits(&self) -> usize {
         let first = -self.error.log10().floor();
         (first + 1.0).clamp(0.0, 6.0) as usize

@@ -1,10 +1,11 @@
-//! The least-squares problem: measured movements less those of the model, in units of their standard errors.
+//! The least-squares problem: differences between measured movements and those of the model, in units of their
+//! standard errors.
 //!
 //! The model takes tens of milliseconds for one movement. So each result is stored, and the derivatives with respect
 //! to the keys are reused until the keys are far from the point at which they were computed. Prior knowledge counts
 //! as a measurement: each key is near the file's value, within its prior standard deviation, and the card is near its
-//! place. So a key that the movements do not determine stays where it is, and its uncertainty enlarges the errors
-//! of the others.
+//! nominal place. So a key that the movements do not determine stays where it is, and its uncertainty enlarges the
+//! errors of the others.
 
 use std::cell::RefCell;
 
@@ -22,36 +23,41 @@ pub(crate) const UNKNOWNS: usize = COUNT + card::COUNT;
 /// Standard deviation of the model's roughness around a smooth model, mm and deg: servos have a dead band and pads
 /// stick, so a small change of a key may shift a step by a frame.
 pub(crate) const MODEL_ERROR: f64 = 0.05;
-/// Promised reduction of the sum of squares below which a fit ends; a parameter is then within a third of its error.
+/// Predicted reduction of the sum of squares by the next step below which a fit ends; a parameter is then within a
+/// third of its error.
 const MIN_PROMISED_GAIN: f64 = 0.1;
-/// Promised reduction up to which a step that gains nothing is explained by the model's roughness and not by wrong
-/// derivatives.
+/// Largest predicted reduction for which a step without any gain is attributed to the model's roughness and not to
+/// wrong derivatives.
 const ROUGHNESS_GAIN: f64 = 2.0;
-/// Largest number of steps of a fit, and of halvings of a step that gains nothing.
+/// Largest number of steps of a fit.
 const STEPS: usize = 12;
+/// Largest number of halvings of a step that does not reduce the sum of squares.
 const HALVINGS: usize = 2;
-/// Distances, in steps of a key, from the point of the derivatives beyond which they are recomputed: during a fit,
-/// and at its end.
+/// Distance from the point of the derivatives, in steps of a key, beyond which they are recomputed during a fit.
 const FAR_STEPS: f64 = 4.0;
+/// Distance from the point of the derivatives, in steps of a key, beyond which they are recomputed at the end of a
+/// fit.
 const NEAR_STEPS: f64 = 1.0;
 
 /// The measured movements of a robot, and a model of it.
 pub(crate) struct Problem<'a> {
-    /// Parts that the model leaves undetermined have an infinite error.
+    /// The measured movements. Parts that the model leaves undetermined have an infinite error.
     ways: &'a [MeasuredMovement],
     /// The file's values.
     pub start: Values,
     /// Prior standard deviations of the unknowns.
     pub prior_errors: [f64; UNKNOWNS],
     predict: &'a dyn Fn(&Values) -> Vec<Travel>,
+    /// Results of the model for all values so far.
     computed: RefCell<Vec<(Values, Vec<Travel>)>>,
-    /// Values at which the derivatives are computed.
+    /// Values at which the derivatives are computed; `None` if they have to be chosen anew.
     slopes_at: RefCell<Option<Values>>,
 }
 
-/// All unknowns after a fit; those that were held have their start values.
+/// The result of a fit.
 #[derive(Clone, Debug)]
 pub(crate) struct Solution {
+    /// Values of all unknowns; those that were held have their start values.
     pub at: [f64; UNKNOWNS],
     /// Covariance of the free unknowns, in their order.
     pub covariance: DMatrix<f64>,
@@ -83,7 +89,7 @@ impl<'a> Problem<'a> {
         errors.filter(|error| error.is_finite()).count()
     }
 
-    /// Start values of the unknowns: the file's keys, and a card exactly in its place.
+    /// Start values of the unknowns: the file's keys, and a card exactly in its nominal place.
     pub fn start_unknowns(&self) -> [f64; UNKNOWNS] {
         std::array::from_fn(|i| self.start.get(i).copied().unwrap_or_default())
     }
@@ -97,12 +103,13 @@ impl<'a> Problem<'a> {
             .collect()
     }
 
-    /// Differences of the measured movements from the model's, in standard errors.
+    /// Differences of the measured movements from those of the model, in standard errors.
     pub fn differences(&self, at: &[f64; UNKNOWNS]) -> Vec<[f64; 3]> {
         self.in_errors(&self.predicted_on_card(at), |part, mean| mean - part)
     }
 
-    /// Sum of squares that a fit of all unknowns minimises: differences of movements, and deviations from the prior.
+    /// Sum of squares that a fit of all unknowns minimises: differences of movements, and deviations from the prior
+    /// values.
     pub fn cost(&self, at: &[f64; UNKNOWNS]) -> f64 {
         let ways = self.differences(at).into_flattened();
         let before = self.start_unknowns();
@@ -110,6 +117,8 @@ impl<'a> Problem<'a> {
         ways.into_iter().chain(known).map(|part| part * part).sum()
     }
 
+    /// Combines each predicted part with the measured one by `of`, and divides the result by its standard error, which
+    /// includes the model's roughness.
     fn in_errors(&self, parts: &[[f64; 3]], of: impl Fn(f64, f64) -> f64) -> Vec<[f64; 3]> {
         let each = self.ways.iter().zip(parts);
         let scaled = |(way, parts): (&MeasuredMovement, &[f64; 3])| {
@@ -118,8 +127,8 @@ impl<'a> Problem<'a> {
         each.map(scaled).collect()
     }
 
-    /// The travels of the model. Those for a play below 0 are the reflection of those for the same play above 0, so
-    /// that the fit of a robot without play may err to both sides. Other keys stop at their least values.
+    /// The movements that the model predicts. Those for a negative play are extrapolated as 2 f(0) - f(-play), so
+    /// that the fit of a robot without play may err in both directions. Other keys are limited to their least values.
     fn travels(&self, values: &Values) -> Vec<Travel> {
         if values[PLAY] < 0.0 {
             let with = |play: f64| {
@@ -174,7 +183,8 @@ impl<'a> Problem<'a> {
             let step = &covariance * &gradient;
             let promised = step.dot(&gradient);
             if promised < MIN_PROMISED_GAIN {
-                // The errors come from the derivatives, which beyond a fold differ from those where the fit began.
+                // The errors come from the derivatives, which beyond a fold differ from those at the start of the
+                // fit.
                 match self.forget_slopes(split(&at).0, NEAR_STEPS) {
                     true => continue,
                     false => break,
@@ -191,7 +201,7 @@ impl<'a> Problem<'a> {
                 shorter.filter(|(_, there)| there.norm_squared() < here.norm_squared());
             match better.next() {
                 Some(next) => (at, here) = next,
-                // Derivatives from another point may lead the wrong way.
+                // Derivatives from another point may give a wrong direction.
                 None if promised > ROUGHNESS_GAIN && self.forget_slopes(split(&at).0, 0.0) => {}
                 None if self.forget_slopes(split(&at).0, NEAR_STEPS) => {}
                 None => break,
@@ -207,7 +217,8 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// Discards the derivatives if they were computed more than so many steps from these values; returns true then.
+    /// Discards the derivatives if they were computed more than `steps` steps of a key from these values. Returns
+    /// true if none are left.
     fn forget_slopes(&self, values: Values, steps: f64) -> bool {
         let mut slopes_at = self.slopes_at.borrow_mut();
         let is_elsewhere = !slopes_at.is_some_and(|at| is_within(steps, at, above_least(values)));
@@ -240,26 +251,27 @@ impl<'a> Problem<'a> {
         slopes
     }
 
-    /// The point at which to compute derivatives that are valid at these values.
+    /// The point at which to compute derivatives that are valid at these values: the previous point if it is near
+    /// enough.
     fn slopes_near(&self, values: Values) -> Values {
         let mut slopes_at = self.slopes_at.borrow_mut();
         if let Some(at) = slopes_at.filter(|at| is_within(FAR_STEPS, *at, values)) {
             return at;
         }
-        // At a least value, the derivatives are those of its feasible side.
+        // At a key's least value, the derivatives are those of its feasible side.
         let values = above_least(values);
         *slopes_at = Some(values);
         values
     }
 }
 
-/// True if each key differs by at most so many of its steps.
+/// True if each key differs by at most `steps` of its steps.
 fn is_within(steps: f64, a: Values, b: Values) -> bool {
     let mut each = a.iter().zip(b).zip(&KEYS);
     each.all(|((a, b), key)| (a - b).abs() <= steps * key.step)
 }
 
-/// The values, raised to the least possible ones.
+/// The values, each raised to the least possible value of its key if it is below it.
 fn above_least(values: Values) -> Values {
     std::array::from_fn(|i| values[i].max(KEYS[i].least))
 }

@@ -10,7 +10,7 @@ impl Identified {
     /// unchanged.
     ///
     /// # Errors
-    /// Fails if the text has no place for a key, or the robot with the new values is refused.
+    /// Fails if the text has no place for a key, or if the robot with the new values is refused.
     pub fn text(&self, text: &str) -> Result<String, Trouble> {
         let mut new = text.to_owned();
         let mut names: Vec<&str> = self.moved().map(|found| found.key.name).collect();
@@ -25,7 +25,7 @@ impl Identified {
     }
 }
 
-/// Writes the value of a key, one number or a list, with a comment about the numbers that moved.
+/// Writes the value of a key, which is one number or a list, with a comment about the numbers that moved.
 fn with_key(text: &str, numbers: &[&Found]) -> Result<String, edit::NoSuchKey> {
     let name = numbers[0].key.name;
     let values: Vec<f64> = numbers.iter().map(|found| found.written()).collect();

@@ -1,6 +1,6 @@
 //! The errors of an identification.
 
-/// The reason why nothing is identified.
+/// A reason why the keys cannot be identified.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Trouble {
     /// The robot has no such gait.
@@ -12,7 +12,7 @@ pub enum Trouble {
     /// A figure is not finite, its error is negative, or the pace is not positive.
     #[error("the way of `{0}` has a figure that is no number; measure it again")]
     NoNumber(String),
-    /// No movement is given, or two feet pull against two in all of them.
+    /// No movement is given, or in all of them two feet pull against the other two.
     #[error(
         "in none of these gaits three feet decide the way; measure some that walk or turn, as walk, trot, crawl, left, right"
     )]

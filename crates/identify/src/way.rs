@@ -1,6 +1,6 @@
 //! The measured movement of a gait.
 
-/// The parts of a movement and their units, in the order of every array of them.
+/// Names and units of the parts of a movement, in the order of every array of parts.
 pub const PARTS: [(&str, &str); 3] = [("ahead", "mm"), ("left", "mm"), ("turn", "deg")];
 
 /// Measured movement of the robot in one cycle of a gait.

@@ -11,7 +11,7 @@ use lizard_robot::{CheckedGait, Ground, Robot, Travel};
 const ERROR: f64 = 0.03;
 /// Number of gaits that are filmed.
 const GAITS: usize = 8;
-/// Possible change of each key, in their order; a robot gets up to three of them.
+/// Possible change of each key, in the order of `KEYS`; a robot gets up to three of these changes.
 const CHANGES: [f64; 7] = [2.0, 0.5, 6.0, -5.0, 0.5, 0.15, 0.08];
 
 fn set(ground: &mut Ground, key: usize, change: f64) {
@@ -27,7 +27,7 @@ fn set(ground: &mut Ground, key: usize, change: f64) {
     *value += change;
 }
 
-/// A random number of a normal distribution.
+/// A random number with an approximately normal distribution: mean 0, standard deviation 1.
 fn normal(rng: &mut Rng) -> f64 {
     (0..12).map(|_| rng.f64()).sum::<f64>() - 6.0
 }
@@ -37,7 +37,7 @@ fn in_turn(count: usize, walk: &(dyn Fn(usize) -> Travel + Sync)) -> Vec<Travel>
     (0..count).map(walk).collect()
 }
 
-/// Movements of the fastest gaits of a robot on another ground, as a film measures them.
+/// Movements of the fastest gaits of a robot on another ground, with the random errors of a film.
 fn filmed_movements(robot: &Robot, ground: &Ground, rng: &mut Rng) -> Vec<MeasuredMovement> {
     let far = |gait: &CheckedGait| {
         let way = robot.predict(gait);

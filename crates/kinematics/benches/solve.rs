@@ -16,7 +16,8 @@ const LINKS: [f64; 20] = [
 /// Neutral angles of the servos, degrees.
 const NEUTRAL: [f64; 4] = [138.59, 41.41, 318.59, 221.41];
 
-/// A pose within 34 degrees of neutral, the paper's safe box.
+/// A pose within 34 degrees of neutral, the paper's safe box. Multiples of these irrational
+/// steps fill the box evenly.
 fn pose(number: usize) -> [f64; 4] {
     let steps = [0.856_674_883, 0.733_891_856, 0.628_706_720, 0.538_597_257];
     std::array::from_fn(|servo| {

@@ -1,11 +1,11 @@
 //! Degrees, the one angle unit of the interface, and their trigonometry.
 //!
-//! Reducing degrees by multiples of 90 is exact, reducing radians is not: so sin 180 is 0
-//! here, and an angle and the same angle a turn later have the same sine, bit for bit
-//! (except for the last bit exactly on a diagonal, where either octant may answer). No
-//! function branches on its argument, so they are several times faster than the general
-//! functions of a mathematics library. Only IEEE additions, multiplications, divisions
-//! and comparisons are used, never fused: the same bits on every host.
+//! Reducing degrees by multiples of 90 is exact, reducing radians is not: so sin 180 is exactly 0,
+//! and an angle and the same angle a turn later have the same sine, bit for bit (except for the
+//! last bit exactly on a diagonal, where either octant may answer). The functions do not branch on
+//! their arguments, so they are several times faster than the general functions of a mathematics
+//! library. Only IEEE additions, multiplications, divisions and comparisons are used, never fused:
+//! the same bits on every host.
 //!
 //! The polynomials come from `src/angle/polynomials.rs`, which computes them with
 //! 256 bits; their own errors are at most 2.1e-17 of the result, a fifth of an
@@ -51,14 +51,15 @@ const ATAN: [f64; 11] = [
 /// tan 22.5 degrees.
 const HALF_EIGHTH: f64 = 0.41421356237309503;
 
-/// 1.5 * 2^52: adding and subtracting it rounds to a whole number, and the last bits of
-/// the sum are those of that number.
+/// 1.5 * 2^52: adding and subtracting it rounds to a whole number, and the last bits of the sum are
+/// those of the whole number.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
-/// Angle from which the reduction by [`ROUND`] is no longer exact.
+/// Least size of an angle for which the reduction by adding a large constant is no longer exact,
+/// deg.
 const MAX_REDUCED: f64 = 1e15;
 
-/// A polynomial by Horner's rule.
+/// Evaluates a polynomial by Horner's rule.
 #[inline(always)]
 fn horner<const N: usize>(coefficients: &[f64; N], x: f64) -> f64 {
     let mut sum = coefficients[N - 1];
@@ -77,7 +78,7 @@ fn choose(mask: u64, yes: f64, no: f64) -> f64 {
     f64::from_bits(no.to_bits() ^ ((yes.to_bits() ^ no.to_bits()) & mask))
 }
 
-/// A mask of all ones if the condition is true.
+/// Returns a mask of all ones if the condition is true, otherwise zero.
 #[inline(always)]
 fn mask(condition: bool) -> u64 {
     u64::from(condition).wrapping_neg()
@@ -100,9 +101,8 @@ pub fn sin_cos(degrees: f64) -> (f64, f64) {
     (sin, cos)
 }
 
-/// Sines and cosines of several angles in degrees, the same bits as one by one.
-/// Each step runs over all of them, which the compiler turns into vector
-/// instructions.
+/// Sines and cosines of several angles in degrees, bit for bit those of [`sin_cos`]. Each step runs
+/// over all angles, which the compiler turns into vector instructions.
 #[inline(always)]
 pub fn sin_cos_all<const N: usize>(degrees: [f64; N]) -> ([f64; N], [f64; N]) {
     let (mut sines, mut cosines) = ([0.0; N], [0.0; N]);
@@ -120,12 +120,12 @@ pub fn sin_cos_all<const N: usize>(degrees: [f64; N]) -> ([f64; N], [f64; N]) {
         let r = (degrees[i] - (rounded - ROUND) * 90.0) * (PI / 180.0);
         let z = r * r;
         let sin = r + r * (z * horner(&SIN, z));
-        // 1 - z/2 is rounded; its error is added with the small terms.
+        // 1 - z/2 is rounded; the rounding error is added with the small terms.
         let half = 0.5 * z;
         let near = 1.0 - half;
         let cos = near + (((1.0 - near) - half) + z * (z * horner(&COS, z)));
-        // Quarters 1 and 3 change places; 2 and 3 negate the sine, 1 and 2 the
-        // cosine. + 0.0 makes a negative zero positive.
+        // In quarters 1 and 3 sine and cosine change places; quarters 2 and 3 negate the sine, 1
+        // and 2 the cosine. + 0.0 makes a negative zero positive.
         let odd = (quarter & 1).wrapping_neg();
         let below = (quarter & 2) << 62;
         let behind = below ^ (odd & SIGN);
@@ -169,7 +169,7 @@ pub fn atan2(y: f64, x: f64) -> f64 {
     choose(mask(y < 0.0), -half, half)
 }
 
-/// The same direction in (-180, 180] degrees, exactly. Not a number if the angle
+/// Wraps an angle to the same direction in (-180, 180] degrees, exactly. Not a number if the angle
 /// is infinite.
 ///
 /// ```
@@ -219,8 +219,8 @@ mod tests {
         fn quarter_turns_change_only_order_and_signs(
             degrees in -44.99..44.99f64, turns in -1_000_000..1_000_000i32,
         ) {
-            // On a grid on which adding the turns is exact, and short of 45 degrees,
-            // which belong to two quarters.
+            // On this grid, adding the turns is exact. Angles of 45 degrees are left out, because
+            // they belong to two quarters.
             let grid = (degrees * 4096.0).round() / 4096.0;
             // On a diagonal either octant may answer.
             prop_assume!(grid.abs() < 45.0);
@@ -303,7 +303,7 @@ mod tests {
             (1e308, 1e308 % 360.0),
             (-1e308, -1e308 % 360.0),
         ] {
-            // Of the three angles that differ by one turn, the one in range.
+            // The expected angle is the one of these three, a turn apart, that is in range.
             let turns = [wrapped - 360.0, wrapped, wrapped + 360.0];
             let wrapped = turns
                 .into_iter()

@@ -34,9 +34,9 @@ impl Jacobian {
 }
 
 impl FiveBarPose {
-    /// The Jacobian. Each coupler passes on only the velocity along itself, so
-    /// the row for the left one reads l2 . v = l2 . (rate of its crank tip).
-    /// Not finite at a type-2 singularity, where the end point is loose.
+    /// The Jacobian. Each coupler transmits only the velocity along itself, so the row of
+    /// the left coupler reads l2 . v = l2 . (velocity of its crank tip). Not finite at a
+    /// type-2 singularity, where the end point is loose.
     pub fn jacobian(&self) -> Jacobian {
         let (left, right) = self.pull();
         Jacobian {

@@ -8,8 +8,8 @@ use crate::margins::Check;
 use crate::real::Real;
 
 impl Solution {
-    /// The value of every condition of a safe pose: margins, strokes, and how far the
-    /// crank tips are from crossing.
+    /// The value of every condition of a safe pose: margins, strokes, and the distance of
+    /// the crank tips from crossing.
     pub fn conditions(&self) -> impl Iterator<Item = (Check, f64)> + use<> {
         self.margins
             .iter()
@@ -22,9 +22,9 @@ impl Solution {
 }
 
 impl<T: Real> FiveBarPose<T> {
-    /// The value of every condition of a safe pose that this end alone decides: type-2,
-    /// type-1 and leg margins, the left crank's first, and how far the crank tips are
-    /// from crossing.
+    /// The value of every condition of a safe pose that depends on this end alone: the
+    /// type-2 margin, the type-1 and leg margins, the left crank's first, and the distance
+    /// of the crank tips from crossing.
     pub fn conditions(&self, end: End) -> [(Check, T); 6] {
         let of_end = |[head, tail]: [Check; 2]| match end {
             End::Head => head,

@@ -1,10 +1,10 @@
 //! The eight loop equations of the body and their Jacobians K and K*.
 //!
-//! The paper prints K as 8x8 and takes its determinant; there are four active
-//! rates, so K is 8x4 and has none. K* is 8x8 and block diagonal, and its
-//! determinant is the product of four block determinants. Rows are head x, y,
-//! tail x, y, left x, y, right x, y in mm, all in the chassis frame with
-//! counter-clockwise angles, which changes signs of several printed entries.
+//! The paper prints K as 8x8 and takes its determinant; there are only four active rates,
+//! so K is 8x4 and has no determinant. K* is 8x8 and block diagonal, and its determinant is
+//! the product of four block determinants. Rows are head x, y, tail x, y, left x, y, right
+//! x, y in mm, all in the chassis frame with counter-clockwise angles, which changes signs
+//! of several printed entries.
 
 use crate::end::End;
 use crate::lizard::{Lizard, Solution};
@@ -47,7 +47,7 @@ pub struct Blocks {
 }
 
 impl Blocks {
-    /// det K*, mm^6: their product.
+    /// det K*, mm^6: the product of the four block determinants.
     pub fn determinant(&self) -> f64 {
         self.head * self.tail * self.left * self.right
     }
@@ -105,12 +105,12 @@ impl Solution {
         k
     }
 
-    /// The factors of det K*.
+    /// The determinants of the blocks of K*, whose product is det K*.
     pub fn blocks(&self) -> Blocks {
         let block = |end: End| {
             let pose = self.end(end);
             let lengths = pose.bars.coupler_left * pose.bars.coupler_right;
-            // Mirroring turns the sign of the sine.
+            // Mirroring changes the sign of the sine.
             -end.sign() * lengths * pose.type2
         };
         Blocks {
@@ -161,11 +161,11 @@ impl Lizard {
     }
 }
 
-/// The first row of each loop: head, tail, left, right. In K* also its first
-/// column.
+/// The first row of each loop in K and K*: head, tail, left, right. In K* these are also
+/// the first columns of the loops.
 const ROWS: [usize; 4] = [0, 2, 4, 6];
 
-/// Writes an entry: the x and y rows of one loop, in one column.
+/// Writes the derivative of one loop by one joint: its x and y rows, in the joint's column.
 fn put_entry<const N: usize>(matrix: &mut [[f64; N]; 8], row: usize, column: usize, entry: Vector) {
     matrix[row][column] = entry.x;
     matrix[row + 1][column] = entry.y;

@@ -32,7 +32,8 @@ pub struct Derivative<T> {
     pub acceleration: T,
 }
 
-/// Rates and accelerations of the passive joints, chassis frame. Legs follow their servos.
+/// Rates and accelerations of the passive joints, chassis frame. The legs are not listed, since they turn
+/// with their servos.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Derivatives {
     /// Head, left coupler; degrees.
@@ -61,8 +62,8 @@ pub struct Derivatives {
 type Spin = Derivative<f64>;
 
 impl Solution {
-    /// Rates and accelerations of the passive joints. Not finite at a type-2
-    /// singularity, where no rates follow from the servos'.
+    /// Rates and accelerations of the passive joints. Not finite at a type-2 singularity, where the servos'
+    /// rates do not determine them.
     pub fn derivatives(&self, drive: &Drive) -> Derivatives {
         let spin = |servo: usize| Spin::new(drive.rate[servo], drive.acceleration[servo]);
         let spins = [0, 1, 2, 3].map(|servo| spin(servo).map(|degrees| degrees * (PI / 180.0)));
@@ -115,13 +116,14 @@ fn degrees(radians: f64) -> f64 {
     radians * (180.0 / PI)
 }
 
+/// Rates and accelerations of one five-bar: both couplers and the end point, in the end's own frame.
 struct LoopDerivatives {
     left: Spin,
     right: Spin,
     point: Derivative<Vector>,
 }
 
-/// d/dt and d2/dt2 of l1 u1 + l2 u2 = l0 + l4 u4 + l3 u3.
+/// Solves the first and second time derivative of l1 u1 + l2 u2 = l0 + l4 u4 + l3 u3 for the couplers.
 fn loop_derivatives(pose: &FiveBarPose, crank_left: Spin, crank_right: Spin) -> LoopDerivatives {
     let r1 = pose.left * pose.bars.crank_left;
     let r2 = pose.left_coupler * pose.bars.coupler_left;
@@ -151,12 +153,12 @@ fn loop_derivatives(pose: &FiveBarPose, crank_left: Spin, crank_right: Spin) -> 
     }
 }
 
-/// Acceleration of the end of a turning link.
+/// Acceleration of the moving end of a link that turns about its other end.
 fn end_acceleration(link: Vector, spin: Spin) -> Vector {
     link.left() * spin.acceleration - link * (spin.rate * spin.rate)
 }
 
-/// Rates of the slider's direction (radians) and length (mm).
+/// Rates and accelerations of the slider's direction (radians) and length (mm).
 fn slider_derivatives(
     pose: &SliderPose,
     (rear, rear_spin): (Vector, Spin),
@@ -183,10 +185,11 @@ mod tests {
 
     /// Longest step of the central differences, s.
     const STEP: f64 = 1e-4;
-    /// Largest angle, about, by which a joint turns in a step, deg.
+    /// Approximate largest angle by which a joint turns in a step, deg.
     const TURN: f64 = 0.1;
 
-    /// Every passive quantity in the order of [`numbers`].
+    /// Every passive quantity: angles of the couplers and sliders, coordinates of head and tail, travels of
+    /// the sliders.
     fn values(s: &Solution) -> [f64; 12] {
         let (head, tail) = (s.head_point(), s.tail_point());
         [
@@ -205,7 +208,7 @@ mod tests {
         ]
     }
 
-    /// Rates and accelerations in the order of [`values`].
+    /// Rates and accelerations of all passive quantities, in the order of [`values`].
     fn numbers(s: &Solution, drive: &Drive) -> ([f64; 12], [f64; 12]) {
         let m = s.derivatives(drive);
         let angles = [
@@ -226,7 +229,7 @@ mod tests {
         )
     }
 
-    /// The robot `t` seconds later, under constant servo accelerations.
+    /// Solves the robot's pose `t` seconds later, under constant servo accelerations.
     fn solve_after(robot: &Lizard, pose: [f64; 4], drive: &Drive, t: f64) -> Option<Solution> {
         let mut there = pose;
         for (i, angle) in there.iter_mut().enumerate() {

@@ -14,9 +14,9 @@ use crate::vector::Vector;
 /// One end of the robot: a five-bar and the point that it carries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// In front, between A1 and A2.
+    /// The front end, between A1 and A2.
     Head,
-    /// Behind, between A4 and A3.
+    /// The rear end, between A4 and A3.
     Tail,
 }
 

@@ -26,8 +26,8 @@ impl fmt::Display for Part {
 /// A reason why one loop has no position, or no unique one. Lengths in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fault {
-    /// An input is infinite or not a number, or a result would be: lengths beyond
-    /// about 1e75 mm or below 1e-75 mm overflow in the computation.
+    /// An input or a result is infinite or not a number. Lengths above about 1e75 mm or
+    /// below 1e-75 mm overflow in the computation.
     NotFinite,
     /// The crank tips are further apart than both couplers reach.
     Apart {
@@ -52,15 +52,15 @@ pub enum Fault {
         is_left: bool,
         /// Distance of the point from that crank's shaft.
         distance: f64,
-        /// Nearest distance that it reaches.
+        /// Least distance that the crank and its coupler reach.
         least: f64,
-        /// Furthest distance that it reaches.
+        /// Greatest distance that the crank and its coupler reach.
         most: f64,
     },
-    /// A point lies on a shaft whose crank and coupler are equally long, so
-    /// that any crank angle will do.
+    /// A point lies on a shaft whose crank and coupler are equally long, so every crank
+    /// angle is a solution.
     OnShaft,
-    /// The arm tips of a slider coincide, so that it has no direction.
+    /// The arm tips of a slider coincide, so the slider has no direction.
     Collapsed,
 }
 

@@ -1,9 +1,8 @@
 //! The RRRRR five-bar: two motors, two cranks, two couplers, one end point.
 //!
-//! The couplers meet in the end point. Given the crank tips, the end point is
-//! where two circles meet; given the end point, each crank tip is where two
-//! circles meet. Both directions use the area of a triangle in Heron's factored
-//! form, which loses no digits when the triangle is flat.
+//! The couplers are joined at the end point. Given the crank tips, the end point is an intersection of two circles;
+//! given the end point, each crank tip is an intersection of two circles. Both directions use the area of a triangle
+//! in Heron's factored form, which loses no digits when the triangle is flat.
 //!
 //! The paper solves R1 + R2 = R0 + R4 + R3 by half-angle tangents. Its theta3 is right,
 //! but it is 0/0 if the crank tips coincide and loses digits if A = 0; its theta2 (D, E,
@@ -43,10 +42,10 @@ pub struct FiveBar {
 /// singularity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AssemblyMode {
-    /// To the left of that line, which is ahead as long as the cranks are not
-    /// crossed. The robot is built this way; the paper's -sqrt in theta3.
+    /// End point to the left of the line from the left crank tip to the right one: ahead as long as the cranks are
+    /// not crossed. The robot is built in this mode; it is the paper's -sqrt in theta3.
     Ahead,
-    /// To the right of that line.
+    /// End point to the right of the line from the left crank tip to the right one.
     Behind,
 }
 
@@ -91,7 +90,7 @@ impl FiveBarPose {
         self.right_coupler.angle()
     }
 
-    /// Smallest of the three margins, the legs' left out.
+    /// Smallest of the type-2 and the two type-1 margins; the margins of the legs are not included.
     pub fn margin(&self) -> f64 {
         self.type2.min(self.type1_left()).min(self.type1_right())
     }
@@ -113,8 +112,8 @@ impl<T: Real> FiveBarPose<T> {
         self.right.cross(self.right_coupler)
     }
 
-    /// A number that is finite if and only if every number of the pose is, since it sums and
-    /// multiplies them all.
+    /// A number that is finite if and only if every number of the pose is finite, since it is computed from all of
+    /// them.
     #[inline(always)]
     fn probe(&self) -> T {
         self.end_point.x + self.end_point.y + self.type2 + self.type1_left() + self.type1_right()
@@ -151,9 +150,8 @@ impl FiveBar {
     /// that the robot is built in. Loops of this size close within 1e-12 mm.
     ///
     /// # Errors
-    /// Returns [`Fault::Apart`] and [`Fault::Nested`] where the couplers do not meet,
-    /// [`Fault::Coincident`] where the end point is free, [`Fault::NotFinite`] for input that is
-    /// not finite or that overflows.
+    /// Returns [`Fault::Apart`] and [`Fault::Nested`] if the couplers cannot reach each other, [`Fault::Coincident`]
+    /// if the end point is free, [`Fault::NotFinite`] for input that is not finite or that overflows.
     ///
     /// ```
     /// let head = lizard_kinematics::FiveBar::new([20.0, 30.0, 50.0, 50.0, 30.0]);
@@ -202,7 +200,7 @@ impl FiveBar {
         self.check_numbers(pose.gap.length(), pose.probe())
     }
 
-    /// True in each lane whose loop closes; [`FiveBar::close`] gives the reason if not.
+    /// True in each lane whose loop closes; [`FiveBar::close`] gives the reason why a loop does not.
     #[inline(always)]
     pub fn closes<const N: usize>(&self, pose: &FiveBarPose<Lanes<N>>) -> [bool; N] {
         let (Lanes(d), Lanes(probe)) = (pose.gap.length(), pose.probe());
@@ -232,9 +230,8 @@ impl FiveBar {
         }
     }
 
-    /// The pose at crank directions of length one, without checking that the loop closes:
-    /// it is meaningless if not, see [`FiveBar::closes`]. The compiler leaves out the parts
-    /// that the caller does not use.
+    /// The pose at crank directions of length one, without checking that the loop closes: the pose is meaningless if
+    /// it does not, see [`FiveBar::closes`]. The compiler leaves out the parts that the caller does not use.
     #[inline(always)]
     pub fn shape<T: Real>(
         &self,
@@ -251,8 +248,8 @@ impl FiveBar {
             AssemblyMode::Ahead => double_area(l2, l3, square.root()),
             AssemblyMode::Behind => -double_area(l2, l3, square.root()),
         };
-        // Foot of the end point on the line between the tips, and its height over
-        // it, both in units of the gap.
+        // Foot of the perpendicular from the end point to the line between the tips, and the end point's height over
+        // that line, both in units of the gap.
         let along = (square + T::of((l2 - l3) * (l2 + l3))) / (square * 2.0);
         let rise = gap.left().scaled(area / square);
         let from_left = gap.scaled(along) + rise;
@@ -272,7 +269,7 @@ impl FiveBar {
     }
 }
 
-/// Twice the area of a triangle from its sides, by Heron in factored form.
+/// Twice the area of a triangle from its sides, by Heron's formula in factored form.
 #[inline(always)]
 fn double_area<T: Real>(a: f64, b: f64, c: T) -> T {
     let (sum, difference) = (T::of(a + b), T::of(a - b));

@@ -19,13 +19,13 @@ use crate::vector::Vector;
 /// Link lengths of one leg in mm, all above 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Leg {
-    /// Between the two pivots on the chassis, mm: lg10.
+    /// Distance between the two pivots on the chassis, mm: lg10.
     pub ground: f64,
     /// The link that the strut drives, mm: lg1.
     pub crank: f64,
-    /// Between crank and follower, mm: lg12.
+    /// The link between crank and follower, mm: lg12.
     pub coupler: f64,
-    /// The other pivoted link, mm: lg13.
+    /// The link on the second pivot of the chassis, mm: lg13.
     pub follower: f64,
 }
 

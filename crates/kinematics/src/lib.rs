@@ -57,7 +57,8 @@
 //! - Servo order A1, A2, A3, A4 = theta1, theta4, theta8, theta5: clockwise from
 //!   the front left.
 //! - Each [`End`] has its own frame, in which the tail is solved like the head; each
-//!   [`Side`] has a front and a rear servo. Only they change frames and orders of servos.
+//!   [`Side`] has a front and a rear servo. Only these two types convert between frames
+//!   and orders of servos.
 //! - Legs in servo order: LF, RF, RH, LH.
 //! - Symbols (l0..l19, theta1..theta16, lg) are the paper's: *Optimal Kinematic Design of
 //!   a Robotic Lizard using Four-Bar and Five-Bar Mechanisms*. If a printed equation does

@@ -37,7 +37,7 @@ pub struct Violation {
 impl fmt::Display for Violation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { what, value, limit } = *self;
-        // To the last digit shown, without the sign of a zero.
+        // Rounded to the digits that are shown, without the sign of a zero.
         let rounded = |scale: f64| libm::round(value * scale) / scale + 0.0;
         let (thousandths, hundredths) = (rounded(1e3), rounded(100.0));
         let stroke = |f: &mut fmt::Formatter<'_>, side: Side| {
@@ -64,8 +64,8 @@ impl fmt::Display for Violation {
 }
 
 impl Limits {
-    /// The limit that a condition breaks with a value (a sine, or mm), if it
-    /// breaks one. A value at its limit is safe; crank tips at 0 mm are crossed.
+    /// The violation of a condition's limit by a value (a sine, or mm); `None` if the value is
+    /// safe. A value at its limit is safe, but crank tips at 0 mm count as crossed.
     pub fn broken(&self, check: Check, value: f64) -> Option<Violation> {
         let below = |limit: f64| (value < limit).then_some(limit);
         let limit = match check {
@@ -98,8 +98,8 @@ impl Limits {
             .filter_map(move |(what, value)| limits.broken(what, value))
     }
 
-    /// Every limit that a five-bar breaks by itself, as the given end, whatever
-    /// the rest of the robot does.
+    /// Every limit that a five-bar breaks by itself, as the given end, for any pose of the
+    /// rest of the robot.
     pub fn end_violations(
         &self,
         end: End,

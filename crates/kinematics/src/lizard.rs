@@ -1,4 +1,4 @@
-//! The complete robot: four servo angles in, every joint out (Algorithm 1).
+//! The forward kinematics of the complete robot: all joints from four servo angles (Algorithm 1).
 
 use crate::angle::sin_cos_all;
 use crate::end::End;
@@ -15,7 +15,7 @@ use crate::vector::Vector;
 /// Four servo angles in degrees, chassis frame. Declared in servo order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// A1, front left; any finite angle, as are all four.
+    /// A1, front left. It may be any finite angle, as may the other three.
     pub theta1: f64,
     /// A2, front right.
     pub theta4: f64,
@@ -69,7 +69,7 @@ pub struct Solution {
     pub left: SliderPose,
     /// The slider between A2 and A3; axes are the chassis frame's.
     pub right: SliderPose,
-    /// Legs in servo order: LF, RF, RH, LH.
+    /// Legs in servo order: left front, right front, right hind, left hind.
     pub legs: [LegPose; 4],
     /// Distance from each singularity.
     pub margins: Margins,
@@ -114,7 +114,7 @@ impl Solution {
         }
     }
 
-    /// The end point of an end, mm, chassis frame.
+    /// The head or tail point, mm, chassis frame.
     pub fn point(&self, end: End) -> Vector {
         self.lizard.to_chassis(end, self.end(end).end_point)
     }
@@ -283,7 +283,7 @@ impl Lizard {
             .shape(side.rear_arm(rear), side.front_arm(front))
     }
 
-    /// The margins at a pose; no arc tangents are taken.
+    /// The margins at a pose, computed without arc tangents.
     ///
     /// # Errors
     /// Fails as [`Lizard::solve`] does.
@@ -292,8 +292,8 @@ impl Lizard {
     }
 
     /// The angles of an end's two servos (degrees in (-180, 180], chassis frame)
-    /// that put its end point at a point in mm of the end's own frame, with
-    /// outward elbows. In servo order: A1, A2 or A3, A4.
+    /// that put its end point at `point` (mm, the end's own frame) with the elbows
+    /// outward. In servo order: A1, A2 or A3, A4.
     ///
     /// # Errors
     /// Fails as [`FiveBar::inverse`] does.

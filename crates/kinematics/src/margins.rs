@@ -5,25 +5,25 @@ use core::fmt;
 /// A condition of a safe pose, to which a limit applies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Check {
-    /// Type-2 of the head, sin(theta3 - theta2).
+    /// Type-2 margin of the head, sin(theta3 - theta2).
     Type2Head,
-    /// Type-2 of the tail, sin(theta7 - theta6) in the tail's own frame.
+    /// Type-2 margin of the tail, sin(theta7 - theta6) in the tail's own frame.
     Type2Tail,
-    /// Type-1 of the arm on A1, sin(theta1 - theta2).
+    /// Type-1 margin of the arm on A1, sin(theta1 - theta2).
     Type1A1,
-    /// Type-1 of the arm on A2, sin(theta3 - theta4).
+    /// Type-1 margin of the arm on A2, sin(theta3 - theta4).
     Type1A2,
-    /// Type-1 of the arm on A3, sin(theta7 - theta8) in the tail's own frame.
+    /// Type-1 margin of the arm on A3, sin(theta7 - theta8) in the tail's own frame.
     Type1A3,
-    /// Type-1 of the arm on A4, sin(theta5 - theta6) in the tail's own frame.
+    /// Type-1 margin of the arm on A4, sin(theta5 - theta6) in the tail's own frame.
     Type1A4,
-    /// Left front leg, sin theta1.
+    /// Margin of the left front leg, sin theta1.
     LegLf,
-    /// Right front leg, sin theta4.
+    /// Margin of the right front leg, sin theta4.
     LegRf,
-    /// Right hind leg, -sin theta8.
+    /// Margin of the right hind leg, -sin theta8.
     LegRh,
-    /// Left hind leg, -sin theta5.
+    /// Margin of the left hind leg, -sin theta5.
     LegLh,
     /// Travel of the left slider, mm.
     StrokeLeft,
@@ -33,7 +33,8 @@ pub enum Check {
     /// paper. At 0 or below the cranks are crossed, which the robot can only be if it was
     /// assembled so.
     UncrossedHead,
-    /// The same distance from the tip of A4's crank to the tip of A3's.
+    /// Distance to the right, mm, from the tip of A4's crank to the tip of A3's. At 0 or
+    /// below the cranks are crossed.
     UncrossedTail,
 }
 
@@ -46,7 +47,8 @@ impl Check {
     pub const LEG: [Self; 4] = [Self::LegLf, Self::LegRf, Self::LegRh, Self::LegLh];
     /// The strokes of both sides, in the order of [`Side::ALL`](crate::Side::ALL).
     pub const STROKE: [Self; 2] = [Self::StrokeLeft, Self::StrokeRight];
-    /// The crank tips of both ends, in the order of [`End::ALL`](crate::End::ALL).
+    /// The conditions that the crank tips are not crossed, in the order of
+    /// [`End::ALL`](crate::End::ALL).
     pub const UNCROSSED: [Self; 2] = [Self::UncrossedHead, Self::UncrossedTail];
 
     /// The name in JSON and in answers, such as `type2_head`.
@@ -90,7 +92,7 @@ pub struct Margins {
 }
 
 impl Margins {
-    /// Every margin with its name.
+    /// Every margin with its condition.
     pub fn iter(&self) -> impl Iterator<Item = (Check, f64)> + use<> {
         let named = |checks, values| core::iter::zip(checks, values);
         core::iter::zip(Check::TYPE2, self.type2)
@@ -98,7 +100,7 @@ impl Margins {
             .chain(named(Check::LEG, self.leg))
     }
 
-    /// The smallest margin with its name; the first of several.
+    /// The smallest margin with its condition; the first one if several are equal.
     pub fn min(&self) -> (Check, f64) {
         self.iter()
             .fold((Check::Type2Head, self.type2[0]), |smallest, next| {

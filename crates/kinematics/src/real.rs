@@ -2,7 +2,8 @@
 //!
 //! The closed forms are written once, for any [`Real`]. A pose takes an f64; a batch of
 //! five-bars or sliders takes [`Lanes`], whose operations the compiler turns into vector
-//! instructions. Every lane has the bits that an f64 alone would have.
+//! instructions. Every lane has exactly the bits that the computation with a single f64
+//! gives.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -18,9 +19,9 @@ pub trait Real:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// The number that equals a constant.
+    /// Converts a constant to this type of number.
     fn of(value: f64) -> Self;
-    /// Square root, rounded correctly; of a negative number it is 0.
+    /// Square root, rounded correctly; 0 for a negative number.
     fn root(self) -> Self;
     /// Sines and cosines of angles in degrees.
     fn sin_cos_each<const K: usize>(degrees: [Self; K]) -> ([Self; K], [Self; K]);
@@ -34,7 +35,7 @@ impl Real for f64 {
 
     #[inline(always)]
     fn root(self) -> Self {
-        // Not `max`, which would turn NaN into 0.
+        // `max` would turn NaN into 0.
         (if self < 0.0 { 0.0 } else { self }).sqrt()
     }
 

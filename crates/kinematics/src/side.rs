@@ -14,9 +14,9 @@ use crate::vector::Vector;
 /// One side of the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// Between A1 and A4.
+    /// The left side, between A1 and A4.
     Left,
-    /// Between A2 and A3.
+    /// The right side, between A2 and A3.
     Right,
 }
 
@@ -32,7 +32,7 @@ impl Side {
         }
     }
 
-    /// Indices, in servo order, of its front and its rear servo.
+    /// Indices, in servo order, of the side's front and rear servo.
     pub const fn servos(self) -> [usize; 2] {
         match self {
             Self::Left => [0, 3],
@@ -40,8 +40,9 @@ impl Side {
         }
     }
 
-    /// The sign of the side: 1 on the left, -1 on the right. The front arm stands
-    /// at this times +90 degrees from its crank, the rear arm at this times -90.
+    /// The sign of the side: 1 on the left, -1 on the right. The angle from a crank to its
+    /// front arm is +90 degrees times this sign, to its rear arm -90 degrees times this
+    /// sign.
     pub const fn sign(self) -> f64 {
         match self {
             Self::Left => 1.0,

@@ -18,7 +18,7 @@ pub enum Singularity {
     /// Type 1: left crank and coupler lie on one line; the end point cannot move
     /// along it.
     LeftArm,
-    /// Type 1 of the right arm.
+    /// Type 1: right crank and coupler lie on one line; the end point cannot move along it.
     RightArm,
 }
 
@@ -37,20 +37,21 @@ impl FiveBar {
     /// Every singular position with this left crank angle (degrees), in the
     /// assembly mode that the robot is built in; at most ten.
     ///
-    /// Coinciding crank tips are isolated, so that only their own crank angles find
-    /// them: see [`FiveBar::coinciding_tips`].
+    /// Poses with coinciding crank tips are isolated points and not among them: see
+    /// [`FiveBar::coinciding_tips`].
     pub fn singular_with(&self, theta_left: f64) -> impl Iterator<Item = SingularPose> + use<> {
         let bars = *self;
         let left = Vector::direction(theta_left);
         let tip = bars.left_shaft() + left * bars.crank_left;
         let (l2, l3) = (bars.coupler_left, bars.coupler_right);
-        // Type 2: the right tip at the sum or the difference of the couplers.
+        // Type 2: the distance between the crank tips is the sum or the difference of the
+        // couplers.
         let couplers = [l2 + l3, (l2 - l3).abs()]
             .into_iter()
             .filter(|reach| *reach > 0.0)
             .flat_map(move |reach| bars.right_cranks_at(tip, reach))
             .map(|theta| (Singularity::Couplers, theta));
-        // Type 1 left: the end point at the stretched or the folded arm's end.
+        // Type 1 left: the end point is at the tip of the stretched or folded left arm.
         let left_arm = [l2, -l2]
             .into_iter()
             .flat_map(move |reach| bars.right_cranks_at(tip + left * reach, l3))
@@ -75,8 +76,8 @@ impl FiveBar {
             .filter(move |pose| bars.is_singular(pose))
     }
 
-    /// The crank angles where both crank tips are at one point and the end point is
-    /// free on a circle; needs equal couplers.
+    /// The crank angles at which both crank tips coincide and the end point is free on a
+    /// circle; none if the couplers differ in length.
     pub fn coinciding_tips(&self) -> impl Iterator<Item = SingularPose> + use<> {
         let (left, right) = (self.left_shaft(), self.right_shaft());
         let equal = self.coupler_left == self.coupler_right;
@@ -97,8 +98,8 @@ impl FiveBar {
     }
 
     /// True if the candidate's margin vanishes in the robot's own assembly mode; the other
-    /// mode shares the circles but not the arms. A candidate of the couplers whose loop
-    /// fails to close only by rounding counts.
+    /// mode uses the same circles with other arms. A candidate of the couplers also counts
+    /// if its loop does not close, which is an effect of rounding.
     fn is_singular(&self, pose: &SingularPose) -> bool {
         match self.forward_in(AssemblyMode::Ahead, pose.theta_left, pose.theta_right) {
             Err(_) => pose.kind == Singularity::Couplers,
@@ -118,13 +119,13 @@ impl Singularity {
     }
 }
 
-/// The points in which two circles meet: none or two.
+/// The intersections of two circles: none or two, which are equal if the circles touch.
 fn circle_intersections(a: Vector, r: f64, b: Vector, s: f64) -> impl Iterator<Item = Vector> {
     let between = b - a;
     let square = between.square();
     let along = (square + (r - s) * (r + s)) / (2.0 * square);
     let rise = (r * r / square - along * along).sqrt();
-    // Circles that do not meet, or have one centre, give NaN or infinity.
+    // Circles that do not intersect, or are concentric, give NaN or infinity.
     let points = rise.is_finite().then(|| {
         let foot = a + between * along;
         let up = between.left() * rise;
@@ -158,7 +159,7 @@ mod tests {
                         else {
                             continue;
                         };
-                        // Near d = 0 the end point turns fast and signs jump.
+                        // Near d = 0 the end point turns fast and signs change abruptly.
                         let gap = bars.forward(left, a).unwrap().gap.length();
                         if before * after >= 0.0 || gap < 1.0 {
                             continue;
@@ -211,9 +212,9 @@ mod tests {
 
     #[test]
     fn no_path_of_good_margins_leads_to_crossed_cranks() {
-        // Poses with every margin, legs too, at .3, on a half degree grid between
-        // the legs' change points at 0 and 180, cut into connected regions: none
-        // holds both signs of K2.
+        // Poses in which every margin, those of the legs included, is at least 0.3, on a
+        // half-degree grid between the legs' change points at 0 and 180, are divided into
+        // connected regions: no region has both signs of K2.
         const N: usize = 360;
         let state = |left: usize, right: usize| {
             let (left, right) = (left as f64 / 2.0 + 0.25, right as f64 / 2.0 + 0.25);

@@ -1,11 +1,11 @@
 //! A slider between two arms, one on each side of the robot: the RRPRR loop.
 //!
-//! Both arms are rigid with a crank, so their tips are known, and the prismatic joint
-//! lies on the line from the rear tip to the front one: length d = l12 + l13 + s,
-//! direction phi. Its only singularity is d = 0; in practice its stroke limits it.
+//! Each arm is rigidly joined to a crank, so the arm tips are known, and the prismatic joint
+//! lies on the line from the rear tip to the front one: length d = l12 + l13 + s, direction
+//! phi. Its only singularity is d = 0; in practice its stroke limits it.
 //!
-//! The paper takes theta10 + theta11 = 0 for the two halves; with angles counted
-//! counter-clockwise the halves are opposite, theta11 = theta10 + 180, and the
+//! The paper takes theta10 + theta11 = 0 for the two halves of the slider; with angles counted
+//! counter-clockwise the halves have opposite directions, theta11 = theta10 + 180, and the
 //! unknowns are phi = theta10 and s.
 
 use crate::fault::Fault;
@@ -88,8 +88,8 @@ impl Slider {
         check_numbers(pose.d, pose.s)
     }
 
-    /// True in each lane whose slider has a direction; [`Slider::close`] gives the reason if
-    /// not.
+    /// True in each lane whose slider has a direction; [`Slider::close`] gives the reason why a
+    /// slider has none.
     #[inline(always)]
     pub fn closes<const N: usize>(&self, pose: &SliderPose<Lanes<N>>) -> [bool; N] {
         let (Lanes(d), Lanes(s)) = (pose.d, pose.s);

@@ -50,7 +50,7 @@ impl<T: Real> Vector<T> {
         self.square().root()
     }
 
-    /// The square of its length.
+    /// Square of the vector's length.
     #[inline(always)]
     pub fn square(self) -> T {
         self.dot(self)
@@ -68,13 +68,13 @@ impl<T: Real> Vector<T> {
         self.x * other.y - self.y * other.x
     }
 
-    /// Turned by +90 degrees, exactly.
+    /// The vector turned by +90 degrees; exact.
     #[inline(always)]
     pub fn left(self) -> Self {
         Self::new(-self.y, self.x)
     }
 
-    /// Turned by -90 degrees, exactly.
+    /// The vector turned by -90 degrees; exact.
     #[inline(always)]
     pub fn right(self) -> Self {
         Self::new(self.y, -self.x)

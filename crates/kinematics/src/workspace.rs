@@ -37,7 +37,7 @@ impl Workspace {
         }
     }
 
-    /// True if the end point can be at a point of the five-bar's frame.
+    /// True if the end point can reach a point of the five-bar's frame.
     pub fn contains(&self, point: Vector) -> bool {
         [-self.half_base, self.half_base].into_iter().all(|x| {
             let square = (point - Vector::new(x, 0.0)).square();
@@ -45,24 +45,25 @@ impl Workspace {
         })
     }
 
-    /// The area in mm^2, above and below the base together.
+    /// The area in mm^2, on both sides of the base together.
     pub fn area(&self) -> f64 {
         let distance = 2.0 * self.half_base;
         let (r, s) = (self.inner, self.outer);
-        // Both rings: both large discs, less either small one.
+        // Both rings overlap where both large discs do, less the overlap with either small disc;
+        // the overlap of both small discs, subtracted twice, is added back once.
         lens_area(s, s, distance) - 2.0 * lens_area(r, s, distance) + lens_area(r, r, distance)
     }
 
-    /// The largest circle within the workspace; of two that mirror each other,
-    /// the upper one. `None` if the two rings have no area in common.
+    /// The largest circle within the workspace; of two mirror images, the upper one. `None` if
+    /// the two rings have no area in common.
     ///
-    /// No circle within a ring has more than half its width as its radius. Where
-    /// the middles of both rings meet (l0/2 is at most the larger of l1 and l2),
-    /// a circle there has that radius and touches all four circles: the paper's.
-    /// With a wider base the outer circles alone bound it: it lies in the middle
-    /// of the base, and the paper's y is not real. Two equal bars give a ring without
-    /// an inner circle, but with a shaft in its middle, where the arm is folded and singular; the
-    /// shaft stays outside the circle, too.
+    /// The radius of a circle within a ring is at most half the ring's width. If the middle
+    /// circles of both rings intersect (l0/2 is at most the larger of l1 and l2), a circle
+    /// centred on the intersection has that radius and touches all four circles: the paper's.
+    /// With a wider base only the outer circles limit the inscribed circle: it is centred on the
+    /// base, and the paper's y is not real. If crank and coupler are equally long, a ring has no
+    /// inner circle, but its centre is a shaft, where the arm is folded and singular; the shaft
+    /// stays outside the inscribed circle, too.
     pub fn inscribed_circle(&self) -> Option<Circle> {
         let middle = (self.outer + self.inner) / 2.0;
         let rise = (middle - self.half_base) * (middle + self.half_base);

@@ -1,4 +1,5 @@
-//! The movement of gaits by MuJoCo, an independent physics engine, for the robots of the project's own files.
+//! The movement of gaits according to MuJoCo, an independent physics engine, for the robots of the project's
+//! own files.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +14,7 @@ const FILES: [(&str, &str); 4] = [
 ];
 /// Results of the last run of `make physics`.
 const FIGURES: &str = include_str!("../../../tools/physics/figures.json");
-/// The case of these results without play, lag or a foot that is too long.
+/// Key of the results without play, lag or a foot that is too long.
 const CASE: &str = "rigid, level";
 
 #[derive(Deserialize)]
@@ -21,8 +22,8 @@ struct Answers {
     mujoco: [f64; 3],
 }
 
-/// Movement per cycle at full pace: mm ahead, mm to the left, deg. `None` if the robot's file differs from the
-/// project's in more than comments.
+/// Movement per cycle at full pace: mm ahead, mm to the left, deg. `None` if the text differs in more than
+/// comments from each of the project's own robots, or if there is no result for the gait.
 pub fn mujoco(text: &str, gait: &str) -> Option<[f64; 3]> {
     let (robot, _) = FILES
         .into_iter()

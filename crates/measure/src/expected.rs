@@ -4,7 +4,8 @@ use lizard_film::Gait;
 use lizard_robot::{CheckedGait, FRAMES_PER_SECOND, Place, Robot};
 use lizard_twin::{ServoModel, Twin};
 
-/// The second cycle of a gait at a pace, with the servos of robot.toml; the pace is 1 for the gait's own.
+/// Simulates two cycles of a gait with the servos of robot.toml and returns the path of the second one.
+/// `pace` is a multiple of the gait's own pace.
 pub fn expected(robot: &Robot, gait: &CheckedGait, pace: f64) -> Gait {
     let period = gait.period() / pace;
     let frames = (period * FRAMES_PER_SECOND).round().max(1.0) as usize;

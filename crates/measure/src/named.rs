@@ -9,7 +9,7 @@ use lizard_robot::{CheckedGait, Robot};
 use crate::expected::expected;
 use crate::watched_film::{Walk, WatchedFilm};
 
-/// Least speed of the gaits that are considered if the user names none, mm/s at full pace.
+/// Least speed of the gaits that are considered if the user names none, mm/s at a pace of 1.
 const SLOWEST: f64 = 3.0;
 
 /// A gait and the path that it is predicted to take.
@@ -34,7 +34,7 @@ impl<'a> Candidate<'a> {
 #[derive(Debug)]
 pub struct NamedWalk<'f> {
     pub(crate) walk: Walk<'f>,
-    /// Index of its gait in [`Gaits::known`].
+    /// Index of the walk's gait in [`Gaits::known`].
     pub(crate) gait: usize,
     pub(crate) measured: Measured,
 }
@@ -46,12 +46,13 @@ pub struct Gaits<'a> {
     pace: f64,
     /// The gaits that the user names, in their order.
     named: Vec<Candidate<'a>>,
-    /// All gaits that leave their place; computed on first use.
+    /// All gaits that are fast enough to be considered; computed on first use.
     all: OnceCell<Vec<Candidate<'a>>>,
 }
 
 impl<'a> Gaits<'a> {
-    /// Takes the gaits that the user names, in their order, or none. At a pace of 1 each gait runs at its own.
+    /// Takes the gaits that the user names, in their order, or none. `pace` is a multiple of each gait's own
+    /// pace.
     pub fn new(robot: &'a Robot, named: &[&'a CheckedGait], pace: f64) -> Self {
         let candidate = |gait: &&'a CheckedGait| Candidate::new(robot, gait, pace);
         Self {
@@ -62,7 +63,7 @@ impl<'a> Gaits<'a> {
         }
     }
 
-    /// The gaits that a walk can have: those that the user names, or else all.
+    /// The gaits that a walk can have: those that the user names, or all if the user names none.
     pub(crate) fn known(&self) -> &[Candidate<'a>] {
         match self.named.is_empty() {
             true => self.all(),
@@ -74,16 +75,17 @@ impl<'a> Gaits<'a> {
         self.all.get_or_init(|| {
             let moving = self.robot.gaits().iter().filter(|gait| gait.moves());
             let all = moving.map(|gait| Candidate::new(self.robot, gait, self.pace));
-            // A gait that stays in its place would make the least rest between two walks too long.
+            // A gait that stays in its place would lengthen the least rest between two walks too much.
             let goes = |own: &Candidate| own.expected.speed() > SLOWEST * self.pace;
             all.filter(goes).collect()
         })
     }
 
-    /// Finds the walks of films, and measures each with its gait.
+    /// Finds the walks of films, and measures each as a walk of its gait.
     ///
     /// # Errors
-    /// Fails with a sentence for the user if the names do not match the walks, or if no gait is clear.
+    /// Fails with a sentence for the user if the number of names differs from that of the walks, if a walk
+    /// resembles no gait clearly, or if a walk does not fit its gait.
     pub fn walks<'f>(&self, films: &'f [WatchedFilm]) -> Result<Vec<NamedWalk<'f>>, String> {
         let expected: Vec<Gait> = self
             .known()
@@ -127,7 +129,8 @@ impl<'a> Gaits<'a> {
     /// Measures one of the named gaits, given by its index, between two times of a film, s, or in all of it.
     ///
     /// # Errors
-    /// Fails with a sentence for the user if the film does not show the gait in that time.
+    /// Fails with a sentence for the user if no gait has this index, or if the film does not show the gait in
+    /// that time.
     pub fn walk<'f>(
         &self,
         gait: usize,
@@ -149,7 +152,8 @@ impl<'a> Gaits<'a> {
         })
     }
 
-    /// Index of the gait that a walk shows clearly.
+    /// Recognises the gait of a walk and returns its index; fails with a message if the walk resembles no
+    /// gait, or two.
     fn recognized(&self, walk: Walk) -> Result<usize, String> {
         let name = |number: usize| self.all()[number].name();
         let (why, hint) = match self.likeness(walk) {
@@ -181,7 +185,7 @@ impl<'a> Gaits<'a> {
         walk.film.watched.likeness(&all, walk.during)
     }
 
-    /// Name of the gait that a walk clearly resembles.
+    /// Name of the gait that a walk clearly resembles; `None` if it resembles no gait, or two.
     pub(crate) fn resembled_gait(&self, walk: Walk) -> Option<&'a str> {
         match self.likeness(walk) {
             Likeness::One(number) => Some(self.all()[number].name()),
@@ -189,7 +193,7 @@ impl<'a> Gaits<'a> {
         }
     }
 
-    /// The message for a walk that is not of its gait, with the gait that it resembles instead.
+    /// The message for a walk that does not fit its gait, with the gait that it resembles instead.
     fn mismatch_message(&self, walk: Walk, own: &Candidate, trouble: Trouble) -> String {
         let like = match trouble {
             Trouble::NotThisGait { .. } | Trouble::AnotherPace { .. } => self.resembled_gait(walk),

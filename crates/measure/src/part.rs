@@ -3,9 +3,9 @@
 use lizard_film::Mean;
 use serde::Serialize;
 
-/// Largest distance from the prediction, in standard errors, that counts as agreement.
+/// Largest difference from the prediction, in standard errors, that counts as agreement.
 pub const MAX_AGREEING_ERRORS: f64 = 2.0;
-/// The names of a movement's parts.
+/// The names of a movement's parts, with their units.
 pub const PARTS: [&str; 3] = ["ahead, mm", "left, mm", "turn, deg"];
 
 /// One part of a movement.
@@ -17,14 +17,15 @@ pub struct Part {
     sd: f64,
     /// Standard error of the mean.
     pub error: f64,
-    /// The prediction; `None` if it is undetermined, since two feet pull against two.
+    /// The prediction; `None` if it is undetermined, because two feet pull against the other
+    /// two.
     pub predicted: Option<f64>,
     /// The mean less the prediction, in standard errors.
     differs: Option<f64>,
     pub(crate) agrees: Option<bool>,
 }
 
-/// Agreement in a word, or by how many standard errors a figure differs.
+/// Describes a difference of so many standard errors: `agrees`, or its size and direction.
 pub fn verdict(differs: f64) -> String {
     if differs.abs() <= MAX_AGREEING_ERRORS {
         return "agrees".to_owned();
@@ -47,7 +48,8 @@ impl Part {
         }
     }
 
-    /// Agreement with the prediction in a word, or by how many errors it differs.
+    /// Describes the difference from the prediction: `agrees`, or its size and direction; `-`
+    /// without a prediction.
     pub fn verdict(&self) -> String {
         self.differs.map_or("-".to_owned(), verdict)
     }

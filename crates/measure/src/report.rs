@@ -12,8 +12,8 @@ use crate::part::{PARTS, Part};
 use crate::range::Range;
 use crate::watched_film::WatchedFilm;
 
-/// Like `AGREES`, for the largest difference within a cycle: the largest of 72 random differences exceeds it in one
-/// of 30 films.
+/// Largest difference from the prediction within a cycle, in standard errors, that counts as agreement. It is more
+/// than for a single figure, since the largest of 72 random differences exceeds it only in one of 30 films.
 const MAX_AGREEING_ERRORS_OF_ALL: f64 = 3.5;
 /// The result of a measurement; its fields have the names of `--json`.
 #[derive(Debug, Serialize)]
@@ -39,30 +39,32 @@ pub struct GaitReport<'a> {
     /// Pace, percent.
     speed: u8,
     walks: Vec<Span<'a>>,
-    /// Number of complete cycles, and the mean time of one with its standard error, s.
+    /// Number of complete cycles.
     pub cycles: usize,
+    /// Mean time of a cycle, s.
     period: f64,
+    /// Standard error of the mean time, s.
     period_error: f64,
     /// Time of a cycle by robot.toml, s.
     period_expected: f64,
     /// Distance ahead in a cycle, mm, in the robot's frame at its beginning.
     pub forward: Part,
-    /// Drift to the left, mm.
+    /// Drift to the left in a cycle, mm.
     pub left: Part,
-    /// Turn, deg, counter-clockwise positive.
+    /// Turn in a cycle, deg, counter-clockwise positive.
     pub turn: Part,
     /// The movement of each cycle.
     each: Vec<Way>,
     /// The mean path within a cycle, and the point at which it is farthest from the predicted one.
     pub within: Vec<Within>,
     farthest: Option<Farthest>,
-    /// Movement per cycle by MuJoCo with ideal servos: mm ahead and to the left, deg.
+    /// Movement per cycle according to MuJoCo with ideal servos: mm ahead and to the left, deg.
     #[serde(skip_serializing_if = "Option::is_none")]
     mujoco: Option<[f64; 3]>,
     /// Range of the prediction if an assumption is wrong.
     #[serde(skip_serializing_if = "Option::is_none")]
     range: Option<Range>,
-    /// The predicted path of a cycle, evenly in time.
+    /// The predicted path of a cycle, at equal steps of time.
     #[serde(skip)]
     pub expected: &'a [Place],
 }
@@ -71,8 +73,9 @@ pub struct GaitReport<'a> {
 #[derive(Debug, Serialize)]
 struct Span<'a> {
     film: &'a str,
-    /// Times in the film, s, with a part of the rests included.
+    /// Start of the walk in the film, s; includes a part of the rest before it.
     from: f64,
+    /// End of the walk in the film, s; includes a part of the rest after it.
     to: f64,
     /// The gait of robot.toml that the path clearly resembles, if it is not the walk's own.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -86,9 +89,9 @@ pub struct Within {
     phase: f64,
     /// Distance ahead since the beginning of the cycle, mm.
     pub forward: Part,
-    /// Distance to the left, mm.
+    /// Distance to the left since the beginning of the cycle, mm.
     pub left: Part,
-    /// Turn, deg.
+    /// Turn since the beginning of the cycle, deg.
     pub turn: Part,
 }
 
@@ -97,8 +100,9 @@ pub struct Within {
 struct Farthest {
     phase: f64,
     part: &'static str,
-    /// Measured less predicted, mm or deg, and in standard errors.
+    /// Measured less predicted, mm or deg.
     difference: f64,
+    /// Measured less predicted, in standard errors.
     differs: f64,
     agrees: bool,
 }
@@ -113,15 +117,18 @@ struct Way {
 /// The camera as the tags show it.
 #[derive(Debug, Serialize)]
 struct CameraLine {
-    /// Height above the floor, mm; tilt from straight down, deg; focal length, px.
+    /// Height above the floor, mm.
     height: f64,
+    /// Tilt from straight down, deg.
     tilt: f64,
+    /// Focal length, px.
     focal: f64,
-    /// Mean error of a floor tag's corner, px.
+    /// Mean error of the corners of the floor tags, px.
     corners: f64,
     moved: bool,
-    /// Height of the deck's tag above the floor, mm: as given, and by its size in the picture.
+    /// Height of the deck's tag above the floor as given, mm.
     deck: f64,
+    /// Height of the deck's tag above the floor according to its size in the picture, mm.
     deck_by_size: f64,
 }
 
@@ -330,8 +337,8 @@ impl<'a> Report<'a> {
         }
     }
 
-    /// Adds the movements by MuJoCo, which are known at full pace for the robots of the project's own files. `text`
-    /// is the content of the robot's file.
+    /// Adds the movements according to MuJoCo, which are known at full pace for the robots of the project's own
+    /// files. `text` is the content of the robot's file.
     pub fn with_mujoco(mut self, text: &str) -> Self {
         for gait in self.gaits.iter_mut().filter(|gait| gait.speed == 100) {
             gait.mujoco = mujoco(text, gait.gait);

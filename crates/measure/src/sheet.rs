@@ -6,19 +6,19 @@ use lizard_film::sheet::{
 };
 use pdf_writer::{Content, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
 
-/// The unit of PDF, a point, in mm.
+/// Length of a point, the unit of PDF, mm.
 const POINT: f64 = 25.4 / 72.0;
 const FONT: Name = Name(b"F1");
 /// Font size, and distance from one line to the next, mm.
 const TYPE: f64 = 3.3;
 const LINE: f64 = 4.7;
-/// Thickness of the cut lines and of the ruler, mm.
+/// Thickness of the cut lines, and of the ruler's lines, mm.
 const CUT: f64 = 0.15;
 const RULED: f64 = 0.3;
 /// Grey of the cut lines.
 const CUT_GREY: f32 = 0.6;
 
-/// Instructions to print, cut, lay and glue the sheet; they stand beside the card.
+/// Instructions to print, cut, lay and glue the sheet, printed beside the card.
 const WORDS: [&str; 9] = [
     "1. Print at 100 % (\"actual size\"). Measure the line between the tags of a strip: if it is not 100 mm",
     "    long, tell lizard measure its length with --ruler.",
@@ -57,7 +57,7 @@ impl Paper {
         let mut pdf = Pdf::new();
         let mut root = pdf.catalog(catalog);
         root.pages(pages);
-        // Printers' dialogs offer to fit a page to the paper; this asks them not to.
+        // Print dialogs may scale a page to fit the paper; this asks them not to.
         root.viewer_preferences()
             .pair(Name(b"PrintScaling"), Name(b"None"));
         root.finish();
@@ -110,7 +110,7 @@ fn draw_strip(content: &mut Content, strip: usize, [x, y]: Point) {
     let begin = middle[0] - RULER / 2.0;
     fill(content, [begin, middle[1] - RULED / 2.0], [RULER, RULED]);
     for i in 0..=10 {
-        // The ends' outer edges are the ruler's ends.
+        // The outer edges of the first and the last mark are the ends of the ruler.
         let at = begin + f64::from(i) * (RULER - RULED) / 10.0;
         let long = if i % 10 == 0 { 8.0 } else { 3.0 };
         fill(content, [at, middle[1] - long / 2.0], [RULED, long]);
@@ -133,7 +133,7 @@ fn draw_card(content: &mut Content, [x, y]: Point) {
         DECK_TAG,
         [middle, y + CARD_MARGIN + DECK_EDGE / 2.0],
     );
-    // The arrow keeps away from the tag by its margin.
+    // The arrow begins beyond the white margin of the tag.
     let base = y + CARD_MARGIN + DECK_EDGE + CARD_MARGIN;
     let tip = y + CARD[1] - 1.0;
     content.move_to(points(middle - 4.0), points(base + 1.0));
@@ -143,8 +143,8 @@ fn draw_card(content: &mut Content, [x, y]: Point) {
     write(content, FORWARD_WORD, [middle + 6.0, base + 2.0]);
 }
 
-/// Draws a tag around its middle: a black square with white ones on it. Single black squares would touch, and
-/// printers and viewers may leave a seam between them.
+/// Draws a tag around its middle: a black square with white ones on it. If the black squares were drawn one by
+/// one, printers and viewers might leave a seam where two of them touch.
 fn draw_tag(content: &mut Content, id: usize, [x, y]: Point) {
     let square = edge(id) / SQUARES as f64;
     let half = edge(id) / 2.0;

@@ -14,7 +14,8 @@ pub struct WatchedFilm {
 }
 
 impl WatchedFilm {
-    /// The walks between rests; without any, the whole film, whose measurement then fails with a reason.
+    /// The walks between rests of at least `rest` seconds. If there are none, the whole film counts as a
+    /// walk, whose measurement then fails with a reason.
     pub(crate) fn walks(&self, rest: f64) -> Vec<Walk<'_>> {
         let mut walks = self.watched.walks(rest);
         if walks.is_empty() {
@@ -24,7 +25,8 @@ impl WatchedFilm {
         walks.into_iter().map(walk).collect()
     }
 
-    /// Beginning and end of the film, s.
+    /// Times of the first and the last position of the robot, s; `None` if there are fewer than two
+    /// positions.
     pub(crate) fn duration(&self) -> Option<[f64; 2]> {
         match &self.watched.path[..] {
             [first, .., last] => Some([first.seconds, last.seconds]),

@@ -21,16 +21,17 @@ use crate::price::Price;
 use loose::{INPUTS, LOOSE_ITEMS, RADIO, Row};
 
 /// Mass per volume of a printed part, g/mm^3: PLA of 1.24 g/cm^3 with three lines of wall and a third of infill.
-/// The sum of all parts is within a tenth of PrusaSlicer's.
+/// The sum over all parts is within 10 % of PrusaSlicer's estimate.
 const PRINTED: f64 = 1.0e-3;
 /// Mass per volume of a pad, which is nearly all wall, g/mm^3: TPU of 1.21 g/cm^3.
 const RUBBERY: f64 = 1.15e-3;
-/// Hours of printing in layers of 0.2 mm on an Ender 3, for each piece and for each gram of it. The sum of all
-/// parts is within a tenth of PrusaSlicer's.
+/// Hours of printing for each piece, whatever its mass, in layers of 0.2 mm on an Ender 3. With the hours for
+/// each gram, the sum over all parts is within 10 % of PrusaSlicer's estimate.
 const HOURS_A_PIECE: f64 = 0.02;
+/// Hours of printing for each gram of a piece.
 const HOURS_A_GRAM: f64 = 0.095;
-/// Masses of bought parts, g. Those of the battery and of a spring's steel are per mm^3, those of screws and
-/// standoffs per mm of length.
+/// Masses of bought parts, g. Those of the battery and of a spring's steel are per mm^3; those whose names end
+/// in `MM` are per mm of length.
 const SERVO: f64 = 9.5;
 const HORN: f64 = 0.8;
 const BOARD: f64 = 25.0;
@@ -87,12 +88,12 @@ impl Item {
         }
     }
 
-    /// Mass of all its pieces, g.
+    /// Mass of all pieces of the row, g.
     fn all(&self) -> f64 {
         self.count as f64 * self.grams
     }
 
-    /// A line for something that has no place on the robot.
+    /// A row for a thing that is not modelled as a body of the robot.
     fn loose((count, what, grams, price): Row) -> Self {
         Self::bought(count, what.to_owned(), grams, price)
     }
@@ -111,7 +112,7 @@ pub struct Bill {
     pub radio: Vec<Item>,
     /// Things to buy for the inputs and the strips on pads that robot.toml has; optional.
     pub inputs: Vec<Item>,
-    /// Sum of the price classes of all things to buy except options: from and to, euros.
+    /// Sum of the price classes of all things to buy except options: lower and upper bound, euros.
     pub euros: [u32; 2],
     /// The robot's mass, g.
     #[serde(serialize_with = "decimals::one::<1, _>")]
@@ -126,8 +127,8 @@ pub struct Bill {
     battery: [f64; 3],
 }
 
-/// Text of the bill's line for a bought body, empty if the body is printed or comes with another one; and the
-/// body's mass, g.
+/// Returns the text of the bill's row for a bought body and the body's mass, g. The text is empty if the body is
+/// printed or comes with another one.
 fn bought(body: &Body, assembly: &Assembly, hold: Option<&SpringEffect>) -> (String, f64) {
     let parts = assembly.robot().parts();
     let diameter = parts.screw.diameter;
@@ -198,7 +199,7 @@ pub(crate) fn grams(body: &Body, assembly: &Assembly) -> f64 {
     bought(body, assembly, None).1
 }
 
-/// Volume of a spring's wire, mm^3: its coils and three more for the hooks.
+/// Volume of a spring's wire, mm^3: its coils, and three more for the hooks.
 fn coil_volume(coil: &Coil) -> f64 {
     use std::f64::consts::PI;
     (coil.coils() + 3.0) * PI * coil.mean() * PI * coil.wire * coil.wire / 4.0
@@ -267,7 +268,7 @@ impl Bill {
         }
     }
 
-    /// The meaning of the price classes, and their sum.
+    /// The text about the meaning of the price classes, and about their sum.
     pub fn prices(&self) -> String {
         let [from, to] = self.euros;
         let meaning = Price::meaning();
@@ -281,7 +282,7 @@ impl Bill {
             .sum()
     }
 
-    /// The number of bought things whose name begins with some words.
+    /// The number of bought things whose name begins with `what`.
     pub fn count(&self, what: &str) -> usize {
         let bought = self.bought.iter();
         let alike = bought.filter(|item| item.what.starts_with(what));

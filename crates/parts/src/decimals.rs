@@ -1,4 +1,4 @@
-//! Rounding of numbers in JSON to the decimals that are known: `UNIT` is 10 for tenths, 1000 for thousandths.
+//! Rounds numbers in JSON to the decimals that are known: `UNIT` is 10 for tenths, 1000 for thousandths.
 
 use serde::{Serialize, Serializer};
 
@@ -10,17 +10,17 @@ fn rounded<const UNIT: u32>(value: f64) -> f64 {
     (unit * value).round() / unit + 0.0
 }
 
-/// Writes a number.
+/// Serializes a rounded number.
 pub(crate) fn one<const UNIT: u32, S: Serializer>(value: &f64, out: S) -> Written<S> {
     rounded::<UNIT>(*value).serialize(out)
 }
 
-/// Writes a number that may be missing.
+/// Serializes a rounded number that may be missing.
 pub(crate) fn optional<const UNIT: u32, S: Serializer>(value: &Option<f64>, out: S) -> Written<S> {
     value.map(rounded::<UNIT>).serialize(out)
 }
 
-/// Writes a list of numbers.
+/// Serializes a list of rounded numbers.
 pub(crate) fn each<const UNIT: u32, S: Serializer>(values: &[f64], out: S) -> Written<S> {
     out.collect_seq(values.iter().map(|value| rounded::<UNIT>(*value)))
 }

@@ -14,7 +14,7 @@ pub struct SpringEffect {
     /// Length of the spring mounted in the strut, mm, measured inside its hooks.
     #[serde(serialize_with = "decimals::one::<1000, _>")]
     pub installed: f64,
-    /// Force at that length, N.
+    /// Pull of the mounted spring, N.
     #[serde(serialize_with = "decimals::one::<1000, _>")]
     pub force: f64,
     /// Rate of the spring, N/mm.
@@ -42,8 +42,8 @@ pub struct SpringEffect {
 }
 
 impl SpringEffect {
-    /// True if a servo can go on turning at the slot's end: the torque there is less than 0.7 of
-    /// its stall torque.
+    /// True if a servo can continue to turn when its strut's slot has ended: the greatest torque
+    /// there is less than 0.7 of the servo's stall torque.
     pub fn lets_servo_turn(&self) -> bool {
         self.end[1] < 0.7 * self.stall
     }

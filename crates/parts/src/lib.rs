@@ -30,14 +30,14 @@
 //!   for collision proofs: a body that is clear of the hull is clear of the part.
 //!   [`Shape::distance`] is exact.
 //! - [`Assembly::may_touch`] is true for pairs that touch by design: bodies that move together,
-//!   and bodies that name the other in [`Body::meets`], as a screw names the parts that it
+//!   and bodies of which one names the other in [`Body::meets`], as a screw names the parts that it
 //!   passes through, the rod its sleeve, and the strut the leg's crank that its spring pulls.
 //! - [`Assembly::prove`] proves how close any two bodies come at any pose that the guard
 //!   accepts; [`Assembly::nearest`] only checks some poses.
 //! - [`Assembly::alternatives`] are bodies that may replace others: struts of the kind that
 //!   robot.toml does not choose.
-//! - [`Layout`] is the plan of pivots and anchors from above. Those of the legs are
-//!   [`lizard_robot::LegPlan`], which the drawings use as well.
+//! - [`Layout`] is the plan of pivots and anchors from above. The pivots and anchors of the legs
+//!   are in [`lizard_robot::LegPlan`], which the drawings use as well.
 
 mod bill;
 mod bodies;

@@ -21,17 +21,18 @@ const SPACER: &str = "spacer";
 pub struct Part {
     /// The name. A part named `link A1 A3` is needed twice, for A1 and for A3.
     pub name: String,
-    /// Names of the bodies for which it is printed.
+    /// Names of the bodies for which the part is printed.
     pub bodies: Vec<String>,
     /// The layers as printed: from z = 0 up, the larger face below.
     pub prisms: Vec<Prism>,
-    /// True if it is printed on its back.
+    /// True if the part is turned over for printing.
     pub turned: bool,
-    /// True if it is printed in a rubbery filament, TPU.
+    /// True if the part is printed in a rubbery filament, TPU.
     pub rubbery: bool,
     /// The part that it may replace; `None` for a standard part of the robot.
     pub instead_of: Option<String>,
-    /// Numbers of its servos, engraved if there are several kinds of the part: `13` for A1 and A3. Otherwise empty.
+    /// The digits engraved in the part: the numbers of its servos, such as `13` for A1 and A3. Empty if only one part
+    /// has its noun.
     pub mark: String,
 }
 
@@ -59,8 +60,8 @@ impl Part {
         self.name.replace(' ', "-")
     }
 
-    /// The layers as printed, with the mark. Holes that would begin in mid-air are closed; the number says how
-    /// many.
+    /// The layers as printed, with the mark and with closed holes where a hole would begin in mid-air; and the number
+    /// of closed holes.
     pub fn printed(&self) -> (Vec<Prism>, usize) {
         let marked = mark::engraved(&self.prisms, &self.mark);
         roof::closed(&marked.unwrap_or_else(|| self.prisms.clone()))
@@ -87,7 +88,8 @@ impl Part {
     }
 }
 
-/// The motion from the frame of a printed part to that of its body: flip, lift, then turn and shift in the plane.
+/// The motion from the frame of a printed part to the frame of its body: flip, lift, then turn and shift in the
+/// plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrintToBody {
     /// True if the part is first turned over: x, y, z become x, -y, -z.
@@ -177,8 +179,8 @@ fn distinct_parts(bodies: &[Body]) -> Vec<Part> {
     parts
 }
 
-/// A body's layers as printed, and true if the body is turned over for that. The first shape is at the origin and
-/// the first bar along x, so equal parts have equal layers wherever they are used.
+/// A body's layers as printed, and true if the body is turned over for printing. The first shape is at the origin
+/// and the first bar along x, so equal parts have equal layers wherever they are used.
 fn as_printed(body: &Body) -> (Vec<Prism>, bool) {
     let area = |prism: Option<&Prism>| prism.map_or(0.0, |prism| Outline::of(prism).area());
     let turned = area(body.prisms.first()) < 0.7 * area(body.prisms.last());

@@ -55,12 +55,13 @@ pub struct Meeting {
     pub second: String,
     /// Their distance, mm; negative if they overlap.
     pub mm: f64,
-    /// Servo angles there, deg, servo order; `None` if they overlap at every pose, or if no pose is known.
+    /// Servo angles at that distance, deg, servo order; `None` if the bodies overlap at every pose, or if no pose is
+    /// known.
     pub pose: Option<[f64; 4]>,
 }
 
 impl Unfit {
-    /// The parts that collide, if that is the reason.
+    /// The parts that collide or may collide; `None` if the robot cannot be built for another reason.
     #[must_use]
     pub fn meeting(&self) -> Option<Meeting> {
         match self {
@@ -214,7 +215,7 @@ impl Assembly {
         Ok(())
     }
 
-    /// The layers of a body. Of a screw without a nut only the head, since its shank cuts a thread into a part.
+    /// The layers of a body without a thread that it cuts: of a screw without a nut, only the head.
     fn outside_threads<'a>(&self, body: &'a Body) -> &'a [Prism] {
         let nut = body.name.replacen("screw", "nut", 1);
         match (body.kind, &body.prisms[..]) {
@@ -227,8 +228,8 @@ impl Assembly {
     }
 }
 
-/// The least distance of two bodies' layers at the heights that they share, or inside each other's holes, mm;
-/// negative if they overlap.
+/// The least distance of two bodies' layers in plan view, at the heights that they share, mm: beside each other or
+/// inside each other's holes; negative if they overlap.
 fn clearance(a: &[Prism], b: &[Prism]) -> f64 {
     let within = |shape: &Shape, holes: &[Shape], beside: f64| {
         let depths = holes

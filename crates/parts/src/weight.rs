@@ -4,15 +4,16 @@ use lizard_robot::Body;
 
 use crate::bill::Bill;
 
-/// Distance from the plate's middle below which the mass centre counts as in the middle, mm.
+/// Distance along x or y from the plate's middle below which the mass centre counts as in the middle, mm.
 const MIDDLE: f64 = 1.0;
-/// Tolerances within which robot.toml agrees with the bill: of the mass as a share, of the centre in mm.
+/// Largest difference of the mass between robot.toml and the bill, as a share of the bill's mass.
 const MASS_TOLERANCE: f64 = 0.05;
+/// Largest distance between the mass centres of robot.toml and of the bill, mm.
 const CENTRE_TOLERANCE: f64 = 3.0;
 
 impl Bill {
-    /// The values for `[body]` in robot.toml: whole grams, and the mass centre to 0.1 mm, or zeros if it is in the
-    /// middle.
+    /// The values for `[body]` in robot.toml: whole grams, and the mass centre to 0.1 mm, or zeros if the mass centre
+    /// is in the plate's middle.
     pub fn body(&self) -> Body {
         let [ahead, left, _] = self.centre;
         let centre = match ahead.abs() < MIDDLE && left.abs() < MIDDLE {
@@ -25,7 +26,7 @@ impl Bill {
         }
     }
 
-    /// `[body]` as text for robot.toml.
+    /// Formats [`Bill::body`] as a table of robot.toml.
     pub fn body_toml(&self) -> String {
         let Body { mass, centre } = self.body();
         match centre {

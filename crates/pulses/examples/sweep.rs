@@ -37,9 +37,10 @@ mod servos {
     servo_pulses::engine!(later: 8);
 }
 
-/// A ring buffer and the number of bytes received, modulo 256. The handler increments the number; main catches up
-/// with it.
+/// The ring buffer of received bytes.
 static RING: [Byte; 16] = [const { Byte::new(0) }; 16];
+/// The number of bytes received, modulo 256. The handler increments it; `main` echoes bytes until it has echoed
+/// as many.
 static RECEIVED: Byte = Byte::new(0);
 
 /// The width of a servo's pulse in a frame, in cycles: a triangle wave from 1000 to 2000 us. Each servo has its own

@@ -20,7 +20,7 @@ pub struct Byte(UnsafeCell<u8>);
 unsafe impl Sync for Byte {}
 
 impl Byte {
-    /// A byte with this initial value.
+    /// Creates a byte with an initial value.
     #[must_use]
     pub const fn new(value: u8) -> Self {
         Self(UnsafeCell::new(value))
@@ -49,7 +49,7 @@ pub struct Word {
 }
 
 impl Word {
-    /// Two bytes with this initial value.
+    /// Creates a word with an initial value.
     #[must_use]
     pub const fn new(value: u16) -> Self {
         let [low, high] = value.to_le_bytes();
@@ -125,7 +125,7 @@ impl Counter {
     }
 }
 
-/// Ports and masks of these pins; the remaining entries are zero.
+/// Port and mask of each pin, then zeros up to `SIZE` entries.
 #[must_use]
 pub const fn pins<const SERVOS: usize, const SIZE: usize>(
     pins: [Pin; SERVOS],

@@ -13,7 +13,7 @@ pub struct Engine<'a, const SERVOS: usize, const SIZE: usize> {
     /// Ports and masks of the pins, by slot. They are zero, which is no pin, until [`Engine::connect`].
     pub pins: &'a [[Byte; 2]; SIZE],
     #[doc(hidden)]
-    /// Two sets of widths: the one that is played and the one that main fills.
+    /// Two frames of pulse widths: one is played while main fills the other.
     pub frames: &'a [[Word; SIZE]; 2],
     #[doc(hidden)]
     /// The index of the frame that is played. Only the handler changes it, and only while `fresh` is set.
@@ -102,7 +102,8 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         self.ticks.get()
     }
 
-    /// The servo and the pulse width of a slot; `None` if it has no pulse.
+    /// The servo and the pulse width of a slot; `None` if the slot has no pulse: the tick's slot, or a width out of
+    /// range.
     #[cfg(any(test, target_arch = "avr"))]
     #[inline(always)]
     fn planned_pulse(&self, slot: u8) -> Option<(usize, u16)> {

@@ -57,7 +57,7 @@
 //! - A falling edge cannot be dropped, and nothing can shorten a pulse that is already too long. It is made at
 //!   once, so the pulse is longer by as much as the edge is late: 10 us, or 160 cycles, turn an SG-90 by one degree
 //!   for 20 ms. If interrupts stay off until the end of the slot, the start of the next slot ends the pulse.
-//! - Both are counted, in `late`.
+//! - Late edges of both kinds are counted, in `late`.
 //!
 //! # Rules
 //!

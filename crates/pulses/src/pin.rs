@@ -1,13 +1,14 @@
 //! Arduino pins as port registers and bits.
 //!
-//! The numbers printed on the board are not those of the chip, whose pins belong to three ports in another order.
+//! The numbers printed on the board are not the chip's pin numbers; the chip's pins belong to three ports in another
+//! order.
 
 /// A pin of an Arduino UNO or Nano.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pin {
     /// The data address of the pin's PORT register; DDR is one below (data sheet, 14.4).
     pub(crate) port: u8,
-    /// The pin's bit in that register.
+    /// The pin's bit in its PORT register.
     pub(crate) mask: u8,
 }
 

@@ -7,10 +7,11 @@ pub const LEAD: u8 = 220;
 /// CPU cycles in a microsecond, each counted by Timer1: the CPU runs at 16 MHz.
 pub const CYCLES_PER_US: u16 = 16;
 
-/// The shortest possible pulse, cycles: 62.5 us at either end of a slot are reserved for the two handlers and for
-/// interrupts that delay them.
+/// The shortest possible pulse, cycles: see [`MARGIN`].
 pub const MIN_WIDTH: u16 = MARGIN;
 
+/// Cycles (62.5 us) after the start and before the end of a slot that are reserved for the engine's two handlers and
+/// for interrupts that delay them.
 const MARGIN: u16 = 1_000;
 
 /// The period of 20 ms that a servo expects between pulses, in cycles.

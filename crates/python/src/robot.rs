@@ -172,8 +172,8 @@ impl Robot {
         ))
     }
 
-    /// The movement of one cycle: mm forward, mm to the left, deg counter-clockwise; NaN for the parts that depend
-    /// on a tie of two feet against two.
+    /// The movement of one cycle: mm forward, mm to the left, deg counter-clockwise; NaN for the parts that are
+    /// undecided because two feet pull against the other two.
     fn predict(&self, py: Python<'_>, name: &str, with_servos: bool) -> PyResult<[f64; 3]> {
         let gait = self.find(name)?;
         let Prediction {
@@ -240,7 +240,7 @@ impl Robot {
     }
 }
 
-/// Writes a solution into its row.
+/// Writes a solution into its row, in the order of [`COLUMNS`], except for the last column.
 fn fill(row: &mut [f64; COLUMNS], s: &Solution) {
     let (head, tail, p) = (s.head_point(), s.tail_point(), s.passive());
     let joints = [
@@ -277,6 +277,7 @@ fn rows<'py, const M: usize, const N: usize>(
     PyArray1::from_vec(py, made).reshape([given.nrows(), N])
 }
 
+/// Wraps a robot for Python, or converts its error to a [`RobotFileError`] with the file, line and key.
 fn checked(py: Python<'_>, robot: Result<lizard_robot::Robot, Error>) -> PyResult<Robot> {
     robot.map(Robot).map_err(|error| {
         let raised = RobotFileError::new_err(error.to_string());

@@ -39,7 +39,7 @@ pub struct Calibration {
 pub struct ServoSettings {
     /// Correction of the horn's angle, deg, counter-clockwise positive.
     pub trim: f64,
-    /// Ends of the travel, deg, chassis frame.
+    /// Smallest and largest angle of the travel, deg, chassis frame.
     pub limit: [f64; 2],
     /// The direction in which a longer pulse turns the servo: `+` for counter-clockwise, or `-`.
     pub dir: char,
@@ -48,7 +48,8 @@ pub struct ServoSettings {
 }
 
 impl ServoSettings {
-    /// The settings of a servo that turns the other way. The horn stays where it is: the same pulse is the opposite trim.
+    /// The settings of a servo that turns in the opposite direction. The horn stays where it is: the same pulse is
+    /// the opposite trim.
     #[must_use]
     pub fn reversed(self) -> Self {
         Self {
@@ -69,7 +70,8 @@ impl ServoSettings {
         }
     }
 
-    /// Reads a line of `cal`, such as `# A1 trim 0 limit 48.59 228.59 dir + scale 10`, from the servo's name on.
+    /// Reads a servo's line in the answer to `cal`, such as `# A1 trim 0 limit 48.59 228.59 dir + scale 10`, given
+    /// without `# A1 `. `None` if a setting is missing or cannot be read.
     fn parse(line: &str) -> Option<Self> {
         let words: Vec<&str> = line.split(' ').collect();
         let [
@@ -162,7 +164,7 @@ impl Calibration {
         servos.chain(rest).collect()
     }
 
-    /// True if a robot would print the same for both; angles may differ by a turn.
+    /// True if a robot would print the same settings for both calibrations; limits may differ by full turns.
     #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {
         let is_near = |a: f64, b: f64| (a - b).abs() < NEAR;
@@ -182,7 +184,7 @@ impl Calibration {
             })
     }
 
-    /// The text of the file: TOML, so that a person can read and change it.
+    /// The text of the calibration file: TOML, so that a person can read and change it.
     #[must_use]
     pub fn text(&self) -> String {
         let Self { boot, deadman, .. } = self;
@@ -202,7 +204,7 @@ impl Calibration {
         text
     }
 
-    /// Reads the text of a file of this name.
+    /// Reads the text of a calibration file; errors give the file's `name`.
     ///
     /// # Errors
     /// Returns the first mistake, with its line and key.
@@ -244,16 +246,17 @@ impl Calibration {
 
 /// The lines that give a robot a calibration, unsaved, in an order that it accepts.
 ///
-/// The robot refuses a line after which a gait would leave the servos' travel. On the way from one calibration to another that may
-/// happen although the result is valid. So refused lines are sent again after the others, and once more from robot.toml's settings.
+/// The robot refuses a line after which a gait would leave the servos' travel. While the settings change one by one,
+/// that may happen although both calibrations are valid. So refused lines are sent again after the others, as long as
+/// each round has fewer of them. Then all lines are sent once more after `factory`, which sets robot.toml's values.
 #[derive(Clone, Debug)]
 pub struct Transfer {
     all: Vec<String>,
-    /// The lines of this round that have not been sent yet.
+    /// The lines of the current round that have not been sent yet.
     left: VecDeque<String>,
     last: String,
     refused: Vec<String>,
-    /// Number of lines of this round.
+    /// Number of lines of the current round.
     round: usize,
     is_from_factory: bool,
 }
@@ -273,7 +276,7 @@ impl Transfer {
         }
     }
 
-    /// The next line to send; `None` if no line is left, or if a round from robot.toml's settings has brought no progress.
+    /// The next line to send; `None` if no line is left, or if no line of a round after `factory` was accepted.
     pub fn next_line(&mut self) -> Option<String> {
         if self.left.is_empty() && !self.refused.is_empty() {
             if self.refused.len() < self.round {
@@ -290,7 +293,7 @@ impl Transfer {
         Some(self.last.clone())
     }
 
-    /// Notes that the robot has refused the last line; returns true if that is the first refusal in its round.
+    /// Records that the robot has refused the last line. Returns true for the first refusal of the current round.
     pub fn refuse(&mut self) -> bool {
         self.refused.push(std::mem::take(&mut self.last));
         self.refused.len() == 1
@@ -309,7 +312,7 @@ fn is_name(text: &str) -> bool {
     !text.is_empty() && text.len() <= 48 && text.chars().all(letters)
 }
 
-/// Returns a number with at most two decimals, and refuses any other: the console takes no more.
+/// Returns a number that has at most two decimals, and refuses any other number: the console accepts no more.
 fn has_two_decimals(section: &Section, key: &str, value: f64) -> Checked<f64> {
     match (value * 100.0 - (value * 100.0).round()).abs() < 1e-6 {
         true => Ok(value),

@@ -1,7 +1,7 @@
 //! The reference of all keys, docs/robot-toml.md, generated from the reader.
 //!
-//! keys.txt has the meaning of each key. Its range, unit and default are those that the reader checks; they are
-//! recorded while it reads a robot with every table.
+//! keys.txt has the meaning of each key. The key's range, unit and default are recorded while the reader reads, and
+//! checks, a robot with every table.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -68,7 +68,7 @@ struct Words {
     default: Option<String>,
 }
 
-/// All keys that the reader knows, without tables.
+/// All keys that the reader knows, except keys whose values are tables.
 fn keys() -> BTreeMap<String, Words> {
     READS.with_borrow_mut(Vec::clear);
     read(&robot()).expect("a robot with every key");

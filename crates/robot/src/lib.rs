@@ -9,13 +9,13 @@
 //!
 //! The folders, in the order of the work: `file/` has the text and its mistakes, `measures/`
 //! the measurements and their ranges, `gaits/` the gaits in floating point, `tables/` the
-//! integers for the chip, `checks/` the check of every sample, `reports/` tables for people. The
-//! movement over the floor is computed by `lizard-contact`, whose types are exported here, too.
+//! integers for the chip, `checks/` the check of every sample, `reports/` tables for people.
+//! `lizard-contact` computes the movement over the floor; its types are exported here, too.
 //!
-//! A file without its gaits becomes `Measures`. These and the gaits' `Tables` become the
-//! integers, [`lizard_core::numbers::section::Content`]. A [`Robot`] holds all of them, and a
-//! [`CoreRobot`] is the core's view of it. docs/firmware.md lists the types of other crates that
-//! also describe a robot.
+//! The file except its gaits becomes `Measures`. The `Measures` and the gaits' `Tables` become the
+//! integers, [`lizard_core::numbers::section::Content`]. A [`Robot`] holds all three, and a
+//! [`CoreRobot`] is the core's view of the robot. docs/firmware.md lists the types of other crates
+//! that also describe a robot.
 //!
 //! # When not to use it
 //! For the geometry alone take `lizard-kinematics`, and for feet on a floor `lizard-contact`:

@@ -64,11 +64,11 @@ impl Robot {
         file::parse(text, Self::read)
     }
 
-    /// The same robot with only two gaits: `stand`, and the one that this table of robot.toml defines, which is
-    /// checked.
+    /// Returns this robot with only two gaits: `stand`, and the gait that `table`, a table of robot.toml, defines.
+    /// Checks that gait.
     ///
     /// # Errors
-    /// Fails if the table contains a mistake, or if the gait breaks a limit.
+    /// Fails if the table contains a mistake, if the gait breaks a limit, or if the robot's section gets too large.
     pub fn with_gait(&self, table: &str) -> Result<Self, Error> {
         const STAND: &str = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
         // Parsed alone first, because the message of a syntax error may cite a second line number.
@@ -101,7 +101,8 @@ impl Robot {
         let volts = robot.servo_type().volts;
         let lines = efforts.iter().map(|effort| effort.line_share(1.0, 1.0));
         rail.slow_down(lines.fold(0.0, f64::max), HIGH_LINE_SHARE, volts);
-        // Using a share of the line at one supply is the same as using the whole line at that share of the supply.
+        // The torque-speed line shrinks in proportion to the supply, so a share of the line at one supply is the
+        // whole line at that share of the supply.
         let [_, stop, _] = rail.thresholds;
         let paces = efforts
             .iter()
@@ -162,8 +163,8 @@ impl Robot {
         self.with_maps().is_some()
     }
 
-    /// An upper bound, in CPU cycles, of the console's search for the last gait's name. A test
-    /// compares it with the simulated UNO.
+    /// An upper bound, in CPU cycles, of the console's search for the name of the last gait or routine. A test
+    /// compares the bound with the simulated UNO.
     #[must_use]
     pub fn longest_search(&self) -> usize {
         let names = self.gaits.iter().map(CheckedGait::name);
@@ -171,7 +172,7 @@ impl Robot {
         6_000 + names.map(|name| 1_400 + 92 * name.len()).sum::<usize>()
     }
 
-    /// Makes the section with the maps; `None` if it is too long.
+    /// Makes the section with the maps; `None` if it is longer than [`SPACE`].
     fn with_maps(&self) -> Option<Vec<u8>> {
         let CellMaps {
             head,
@@ -206,8 +207,8 @@ impl Robot {
         &self.measures.servo_type
     }
 
-    /// The supply voltages of the servos for which the reports give figures, V: their own, and those at which the
-    /// robot slows down and stops.
+    /// The supply voltages of the servos for which the reports give figures, V: the servos' own, that at which the
+    /// robot slows down, and that at which it stops.
     pub fn reported_volts(&self) -> [f64; 3] {
         let supplies = self.supplies();
         let [slow, stop, _] = supplies.rail.map_or(supplies.board, |rail| rail.thresholds);
@@ -319,7 +320,7 @@ impl Robot {
         self.gaits.iter().find(|gait| gait.name() == name)
     }
 
-    /// Finds the gait of a console line, in which a number of cycles may follow the name.
+    /// Finds the gait that a console line names. A blank and a number of cycles may follow the name.
     pub fn gait_of_line(&self, line: &str) -> Option<&CheckedGait> {
         let name = line.trim_end_matches(|c: char| c.is_ascii_digit());
         let counted = || name.ends_with(' ').then(|| self.gait(name.trim_end()))?;
@@ -334,14 +335,14 @@ impl Robot {
     }
 
     /// The core's view of this robot for a simulation of the core. Its section stays in memory until the program
-    /// ends; that of [`Robot::core`] does not.
+    /// ends; the view from [`Robot::core`] borrows the section from this robot instead.
     pub fn firmware(&self) -> &CoreRobot {
         self.firmware
             .get_or_init(|| CoreRobot::unchecked(flash(&self.section)).unwrap_or(CoreRobot::NONE))
     }
 
-    /// The robot with its routines changed as if no contact ever closed: a wait takes one frame, a gait that only a
-    /// contact ends takes one cycle, and every other step its count or time.
+    /// Returns the robot with its routines changed as if no contact ever closed: a wait takes one frame, a gait that
+    /// only a contact ends takes one cycle, and every other step takes its count or time.
     #[must_use]
     pub fn without_contacts(&self) -> Self {
         let mut content = self.content.clone();
@@ -390,14 +391,15 @@ impl Robot {
     }
 
     /// Predicts the movement of the body while the servos take these angles (deg, chassis frame, servo order) one
-    /// after another, with the contact model and rigid legs. It returns a result even if it depends on ties.
+    /// after another, with the contact model and rigid legs. Returns a result even if it depends on unmeasurable
+    /// differences between the pads.
     pub fn travel(&self, angles: impl IntoIterator<Item = [f64; 4]>) -> Travel {
         self.ground()
             .rigid()
             .travel(angles.into_iter().map(|angles| self.sweeps(angles)))
     }
 
-    /// Predicts one cycle of a gait on the robot's own floor.
+    /// Predicts the movement of one cycle of a gait on the robot's own floor.
     pub fn predict(&self, gait: &CheckedGait) -> Prediction {
         gait.predict(self.ground())
     }
@@ -424,7 +426,8 @@ fn name<'a>(root: &Section<'a>) -> Checked<&'a str> {
     Ok(name)
 }
 
-/// The mistake of a robot whose section is too large, with the bytes that waveforms, gaits and routines take.
+/// Makes the error for a robot whose section is too large. It tells the bytes that waveforms, gaits and routines
+/// take.
 fn too_large(content: &Content, bytes: usize) -> Fault {
     let over = bytes - usize::from(SPACE);
     let waves = content.waves.len();

@@ -2,7 +2,7 @@
 
 use crate::{Error, Robot};
 
-/// Names of the files in robots/.
+/// Names of the files in robots/, without `.toml`.
 pub const NAMES: [&str; 5] = ["paper", "large", "unequal", "own-gaits", "grain"];
 
 /// Reads the text of a robot's file.
@@ -11,7 +11,7 @@ pub fn text(name: &str) -> String {
     std::fs::read_to_string(&path).expect(&path)
 }
 
-/// Reads a robot with parts of its file replaced, each at its first occurrence.
+/// Parses a robot's file with parts of its text replaced, each at its first occurrence.
 pub fn with(name: &str, changes: &[(&str, &str)]) -> Result<Robot, Error> {
     let mut text = text(name);
     for (from, to) in changes {
@@ -31,7 +31,7 @@ pub fn all() -> impl Iterator<Item = (&'static str, Robot)> {
     NAMES.into_iter().map(|name| (name, robot(name)))
 }
 
-/// Reads the text of a robot's file up to its gaits.
+/// Reads the text of a robot's file before its first gait, `stand`, so that a test can append other gaits.
 pub fn text_before_gaits(name: &str) -> String {
     let text = text(name);
     let gaits = text.find("[gait.stand]").expect("stand");

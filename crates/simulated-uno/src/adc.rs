@@ -5,7 +5,7 @@ use crate::{Pin, Uno};
 
 impl Uno {
     /// Sets the voltage of the bandgap reference, mV; 1100 by default. The data sheet allows 1000 to 1200, and each
-    /// chip has its own constant value. With [`Fidelity::Stock`](crate::Fidelity) it is always 1100.
+    /// chip has its own constant value. With [`Fidelity::Stock`](crate::Fidelity) the voltage is always 1100.
     ///
     /// # Panics
     /// If the voltage is not within 1000 to 1200 mV.
@@ -18,8 +18,7 @@ impl Uno {
         unsafe { ffi::uno_set_bandgap(self.raw, mv) }
     }
 
-    /// Sets the voltage at one of A0 to A5 from now on, mV; 0 by default. It does not change the pin's digital
-    /// level.
+    /// Sets the voltage at one of the pins A0 to A5, mV; 0 by default. The pin's digital level does not change.
     ///
     /// # Panics
     /// If the pin is not one of A0 to A5.

@@ -1,11 +1,11 @@
 //! Compiler for small AVR programs that a test contains as text.
 //!
-//! A test of a driver, or of the simulator itself, needs a program of about ten lines whose timing follows from the
-//! data sheet by counting. Such a program is easiest to read next to the expected result. Needs Debian's `gcc-avr`
-//! and `avr-libc`.
+//! A test of a driver, or of the simulator itself, needs a program of about ten lines whose cycles can be counted by
+//! hand with the data sheet. Such a program is easiest to read next to the expected result. This module needs
+//! Debian's `gcc-avr` and `avr-libc`.
 //!
-//! All functions except [`run`] panic with avr-gcc's own message if it rejects the program, because a test can do
-//! nothing else.
+//! All functions except [`run`] panic with avr-gcc's own message if avr-gcc rejects the program, because a test can
+//! do nothing else.
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -16,14 +16,14 @@ use crate::Image;
 /// Compiles C (or, inside `asm`, assembly) with avr-gcc for the UNO's chip.
 ///
 /// # Panics
-/// If avr-gcc is missing or rejects the program; then the message is avr-gcc's own.
+/// If avr-gcc is missing, or if it rejects the program: then with avr-gcc's own message.
 #[must_use]
 pub fn c(source: &str) -> Image {
     build(source, "c", &["-O2", "-std=gnu11"])
 }
 
-/// Assembles a complete program. Nothing else is linked, so the first instruction is at flash address 0. The source
-/// includes C headers by `#include`, not by `.include`.
+/// Assembles a complete program. Nothing else is linked, so the first instruction is at flash address 0. The
+/// C preprocessor handles the source, so it includes headers with `#include`, not with `.include`.
 ///
 /// # Panics
 /// See [`c`].

@@ -1,5 +1,5 @@
-//! A board as it is sold: its flash ends with a boot loader, which the chip starts after a reset and which receives
-//! the program over the serial line.
+//! A board as it is sold, with a boot loader in the last bytes of flash. The chip starts the boot loader after a
+//! reset, and the boot loader receives the program over the serial line.
 
 use crate::ffi;
 use crate::{FLASH_SIZE, Fidelity, Image, Uno};
@@ -25,7 +25,7 @@ impl Uno {
         unsafe { std::slice::from_raw_parts(ffi::uno_flash(self.raw), FLASH_SIZE as usize) }
     }
 
-    /// Changes bytes of flash without the program's involvement, as worn-out cells do.
+    /// Changes bytes of flash without the program's involvement, as worn-out memory cells do.
     ///
     /// # Panics
     /// If the bytes do not fit into flash.
@@ -38,7 +38,7 @@ impl Uno {
         flash[start..start + bytes.len()].copy_from_slice(bytes);
     }
 
-    /// Clears the record of received bytes, [`Uno::received_by_uno`]. It would otherwise grow for as long as the
+    /// Clears the record of received bytes, [`Uno::received_by_uno`], which would otherwise grow for as long as the
     /// UNO runs.
     pub(crate) fn forget_received(&mut self) {
         self.clear(ffi::uno_received);

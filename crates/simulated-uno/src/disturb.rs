@@ -1,20 +1,21 @@
-//! Disturbances from outside: an interrupt that has no source on the chip ([`Uno::hold`]), a main program that
-//! makes no progress, a register that changes at any moment.
+//! Disturbances from outside: an interrupt that has no source on the chip ([`Uno::block_interrupts`]), a main program
+//! that makes no progress ([`Uno::stall_main`]), a register that changes at any moment ([`Uno::poke`]).
 
 use crate::Uno;
 use crate::ffi;
 
 impl Uno {
-    /// Interrupts the program for `cycles`. Meanwhile it executes nothing, but flags are set and bytes arrive. This
-    /// interrupt has priority over all of the chip's own. It is served now, or as soon as interrupts are enabled. A
-    /// second call before that replaces the first.
+    /// Interrupts the program for `cycles`, with priority over all of the chip's own interrupts. Meanwhile the
+    /// program executes nothing, but flags are set and bytes arrive. The interruption begins at once, or as soon as
+    /// interrupts are enabled. A second call before its beginning replaces the first.
     pub fn block_interrupts(&mut self, cycles: u64) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim counts the cycles.
         unsafe { ffi::uno_hold(self.raw, cycles) }
     }
 
     /// Stops the main program for this many cycles, as if its next instruction took that long. Interrupts are
-    /// served meanwhile. Where the main program disables interrupts, it continues until it enables them.
+    /// served meanwhile. While interrupts are disabled, the main program is not stopped: it continues until it
+    /// enables them.
     pub fn stall_main(&mut self, cycles: u64) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps a number.
         unsafe { ffi::uno_stall_main(self.raw, self.cycle() + cycles) }

@@ -1,7 +1,8 @@
 //! The EEPROM, and power failures while it is written.
 //!
-//! Programming a byte takes 3.4 ms. If a firmware loses power meanwhile, it must find either its old or its new
-//! settings at the next start. So a test can cut the power in any byte and choose the bits that remain in it.
+//! Programming a byte takes 3.4 ms. If a firmware loses power during that time, it must find either its old or its
+//! new settings at the next start. So a test can cut the power during any byte and choose the bits that remain in
+//! that byte.
 
 use crate::Uno;
 use crate::ffi;
@@ -45,13 +46,14 @@ pub struct EepromOperation {
 /// The moment at which the power fails.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PowerCut {
-    /// At a cycle.
+    /// At this cycle since power-on.
     AtCycle(u64),
-    /// In the middle of the erase phase, in the operation that starts after this number of others: 0 is the next
-    /// one.
+    /// In the middle of the erase phase of a later operation, after this number of operations is skipped: 0 is the
+    /// next operation.
     InErase(u64),
-    /// In the middle of the write phase, counted in the same way. An operation that only erases or only writes is
-    /// cut in its middle by both `InErase` and `InWrite`.
+    /// In the middle of the write phase of a later operation, after this number of operations is skipped: 0 is the
+    /// next operation. An operation that only erases or only writes is cut in its middle by both `InErase` and
+    /// `InWrite`.
     InWrite(u64),
 }
 
@@ -82,9 +84,9 @@ impl Uno {
     ///
     /// `ones` chooses the value that remains in the byte of an operation in progress. During the erase phase, zeros
     /// of the old value become ones one after another: the byte is `old | ones`. During the write phase, ones
-    /// become zeros: the byte is `new | ones`, or `old & (new | ones)` in [`EepromMode::WriteOnly`]. So 0 is the
-    /// first instant of the erase and the last of the write, and 0xff is the last instant of the erase and the
-    /// first of the write.
+    /// become zeros: the byte is `new | ones`, or `old & (new | ones)` in [`EepromMode::WriteOnly`]. So `ones` = 0
+    /// gives the value at the first instant of the erase phase and at the last instant of the write phase; 0xff gives
+    /// the value at the last instant of the erase phase and at the first instant of the write phase.
     ///
     /// With [`Fidelity::Stock`](crate::Fidelity), only [`PowerCut::AtCycle`] has an effect, and it never tears a
     /// byte.
@@ -101,15 +103,15 @@ impl Uno {
         }
     }
 
-    /// Cancels a [`Uno::cut_power`] that has not happened yet.
+    /// Cancels a power failure that [`Uno::cut_power`] has scheduled and that has not happened yet.
     pub fn cancel_power_cut(&mut self) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim forgets what
         // `cut_power` has set.
         unsafe { ffi::uno_keep_power(self.raw) }
     }
 
-    /// Sets the `ones` of [`Uno::cut_power`] for other power failures: a supply below 1.8 V, or
-    /// [`Uno::power_cycle`].
+    /// Sets the bits that remain set in a byte after a power failure other than [`Uno::cut_power`]: a supply below
+    /// 1.8 V, or [`Uno::power_cycle`]. They have the meaning of the argument `ones` of [`Uno::cut_power`].
     pub fn set_torn_bits(&mut self, ones: u8) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps a number.
         unsafe { ffi::uno_set_torn_ones(self.raw, ones) }

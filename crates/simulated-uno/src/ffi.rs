@@ -1,15 +1,16 @@
-//! Declarations of the C functions in `shim/`. Private: [`crate::Uno`] is the safe interface to them. The items of
-//! the shim's lists are public types with C layout: [`crate::Edge`], [`crate::SerialByte`] and others.
+//! Declarations of the C functions in `shim/`. This module is private; [`crate::Uno`] is the safe interface to these
+//! functions. The items of the shim's lists are public types with C layout: [`crate::Edge`], [`crate::SerialByte`]
+//! and others.
 
 use std::ffi::{c_char, c_void};
 
-/// `struct uno`, owned by the shim.
+/// `struct uno` of the shim, which only the shim reads and writes.
 #[repr(C)]
 pub struct RawUno {
     _opaque: [u8; 0],
 }
 
-/// `struct list`.
+/// `struct list` of the shim: a growing array.
 #[repr(C)]
 pub struct RawList {
     pub items: *mut c_void,
@@ -18,7 +19,7 @@ pub struct RawList {
     pub size: usize,
 }
 
-/// `struct vector_use`.
+/// `struct vector_use` of the shim: the entries and the cycles of an interrupt vector.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct RawVector {
@@ -26,10 +27,10 @@ pub struct RawVector {
     pub cycles: u64,
 }
 
-/// `CHIP_VECTORS`.
+/// The number of interrupt vectors, `CHIP_VECTORS` of the shim.
 pub const VECTORS: usize = 26;
 
-/// `enum stop`.
+/// `enum stop` of the shim: the reason why a run has ended.
 #[repr(C)]
 #[derive(Clone, Copy, PartialEq, Eq)]
 #[expect(dead_code, reason = "the shim makes these values")]

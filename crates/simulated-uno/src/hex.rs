@@ -30,7 +30,7 @@ impl Image {
                 Record::EndOfFile => return Ok(Self::of_segments(segments)),
                 Record::ExtendedLinearAddress(upper) => base = u64::from(upper) << 16,
                 Record::ExtendedSegmentAddress(segment) => base = u64::from(segment) << 4,
-                // The chip starts at address 0, whatever these records contain.
+                // Ignored: the chip starts at address 0.
                 Record::StartLinearAddress(_) | Record::StartSegmentAddress { .. } => {}
             }
         }
@@ -38,7 +38,7 @@ impl Image {
     }
 }
 
-/// Adds the bytes of a line: to the last segment if they follow it, else as a new segment.
+/// Adds the bytes of a line to the last segment if their address is the end of that segment, else as a new segment.
 fn append(
     segments: &mut Vec<(u32, Vec<u8>)>,
     address: u64,

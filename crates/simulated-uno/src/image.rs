@@ -13,12 +13,12 @@ pub const SRAM_START: u16 = 0x0100;
 /// The address after the last byte of SRAM.
 pub const SRAM_END: u16 = 0x0900;
 
-/// The size limit of a file, bytes: much more than 32 KiB of code with all its debug information.
+/// The size limit of a file, bytes: much more than an ELF file with 32 KiB of code and all its debug information.
 const MAX_FILE_BYTES: u64 = 4 << 20;
 
-/// The address of SRAM in the single address space of avr-gcc's linker script.
+/// The address of the data space, which contains SRAM, in the single address space of avr-gcc's linker script.
 const DATA_SPACE: u64 = 0x80_0000;
-/// The address of the EEPROM in the same address space.
+/// The address of the EEPROM in the single address space of avr-gcc's linker script.
 const EEPROM_SPACE: u64 = 0x81_0000;
 
 /// The reason an image cannot be loaded.
@@ -35,7 +35,7 @@ pub enum LoadError {
     /// The bytes are not an ELF file.
     #[error("not an ELF file of an AVR: {0}")]
     Elf(#[from] object::read::Error),
-    /// The file is longer than any firmware.
+    /// The file is longer than 4 MiB, the limit for any firmware.
     #[error("not an ELF file of an AVR: it is longer than {} MiB", MAX_FILE_BYTES >> 20)]
     TooLong,
     /// The ELF file is for another machine.
@@ -46,7 +46,7 @@ pub enum LoadError {
     TooLarge {
         /// The address of the segment.
         address: u64,
-        /// The size in bytes.
+        /// The size of the segment, bytes.
         size: u64,
     },
     /// The file has no code.
@@ -60,7 +60,7 @@ pub enum LoadError {
         /// The line's fault.
         reason: String,
     },
-    /// The HEX file ends without its end record: lines may be missing.
+    /// The HEX file has no end record, so lines may be missing.
     #[error("the HEX file has no end record: only a part of it is there")]
     HexCut,
 }
@@ -70,11 +70,11 @@ pub enum LoadError {
 pub struct Symbol {
     /// The name as the linker knows it, mangled if the language mangles names.
     pub name: String,
-    /// Byte address in flash; SRAM addresses start at 0x80_0000.
+    /// Byte address in flash, or 0x80_0000 plus the address in the data space.
     pub address: u64,
     /// The size in bytes, 0 if the compiler does not give it.
     pub size: u64,
-    /// True for a function.
+    /// True if the symbol is a function.
     pub is_function: bool,
 }
 
@@ -241,21 +241,21 @@ impl Image {
         &self.symbols
     }
 
-    /// The symbol with exactly this name.
+    /// The symbol with exactly this name, as the linker knows it; `None` if there is no such symbol.
     #[must_use]
     pub fn symbol(&self, name: &str) -> Option<&Symbol> {
         self.symbols.iter().find(|symbol| symbol.name == name)
     }
 
-    /// The only function whose path ends with `path`, such as `frame` or `Console::frame`. `None` if there are
-    /// several, or none (the compiler may have inlined it).
+    /// The only function whose path ends with `path`, such as `frame` or `Console::frame`. `None` if no function has
+    /// such a path (the compiler may have inlined it), or if several at different addresses have.
     #[must_use]
     pub fn function(&self, path: &str) -> Option<&Symbol> {
         self.unique_symbol(path, |symbol| symbol.is_function)
     }
 
-    /// The data address of the only variable whose path ends with `path`, such as `pulses::LATE`. `None` if there
-    /// are several or none.
+    /// The data address of the only variable whose path ends with `path`, such as `pulses::LATE`. `None` if no
+    /// variable has such a path, or if several at different addresses have.
     #[must_use]
     pub fn variable(&self, path: &str) -> Option<u16> {
         let in_data = |symbol: &Symbol| (DATA_SPACE..EEPROM_SPACE).contains(&symbol.address);
@@ -263,7 +263,7 @@ impl Image {
         Some((symbol.address - DATA_SPACE) as u16)
     }
 
-    /// The symbol of a kind whose path ends with `path`. `None` if there is none, or if those that match have
+    /// The symbol of a kind whose path ends with `path`. `None` if no symbol matches, or if several match and have
     /// different addresses.
     fn unique_symbol(&self, path: &str, is_of_kind: impl Fn(&Symbol) -> bool) -> Option<&Symbol> {
         let matches = |symbol: &&Symbol| is_of_kind(symbol) && symbol.matches_path(path);
@@ -286,7 +286,7 @@ impl Image {
     }
 
     /// Writes bytes to the start of a range of flash and removes everything else that the image has in the range.
-    /// It exchanges data without a compiler.
+    /// So data of a compiled program can be exchanged without compiling it again.
     ///
     /// # Errors
     /// Returns [`LoadError::TooLarge`] if the range is not inside flash or is too short for the bytes.
@@ -314,13 +314,13 @@ impl Image {
         Ok(())
     }
 
-    /// The address of the first byte of flash used.
+    /// The address of the first byte of flash used; 0 if the image is empty.
     pub(crate) fn code_start(&self) -> u32 {
         let starts = self.segments.iter().map(|(at, _)| *at);
         starts.min().unwrap_or(0)
     }
 
-    /// The address after the last byte of flash used.
+    /// The address after the last byte of flash used; 0 if the image is empty.
     pub(crate) fn code_end(&self) -> u32 {
         let ends = self
             .segments

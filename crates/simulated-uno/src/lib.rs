@@ -2,12 +2,12 @@
 //! oscilloscope on its pins and a sender on its serial line.
 //!
 //! A firmware cannot run on the machine that compiles it. A board on the desk has no cycle counter, does not show
-//! its stack, and takes ten minutes to run ten minutes. In the simulation, time is a number of CPU cycles that
+//! its stack, and cannot run faster than real time. In the simulation, time is a number of CPU cycles that
 //! passes as fast as the host can compute, and the same firmware with the same input gives the same edges to the
 //! cycle. Only [`Port`] runs in real time, for programs that expect a board on USB.
 //!
-//! Not suitable for another chip than the ATmega328P, for firmware that depends on hardware PWM, SPI, TWI or the
-//! analogue comparator, or to learn about currents and noise. README.md has the reasons.
+//! Not suitable for other chips than the ATmega328P, for firmware that depends on hardware PWM, SPI, TWI or the
+//! analogue comparator, or to measure currents and noise. README.md has the reasons.
 //!
 //! ```
 //! use simulated_uno::{Fidelity, Pin, Uno, avr_gcc};

@@ -56,13 +56,13 @@ impl std::fmt::Display for Pin {
     }
 }
 
-/// A change of a pin's level. Its cycle is the one in which the instruction that stores to the port ends, for every
-/// kind of store instruction and both directions.
+/// A change of a pin's level. Its cycle is the one in which the instruction that stores to the port register ends,
+/// for every kind of store instruction and for rising and falling edges.
 // `struct edge` of the shim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(C)]
 pub struct Edge {
-    /// Cycle since power-on, 62.5 ns each.
+    /// Number of the cycle, counted from power-on; a cycle takes 62.5 ns.
     pub cycle: u64,
     /// The pin that changed.
     pub pin: Pin,
@@ -70,7 +70,7 @@ pub struct Edge {
     pub high: bool,
 }
 
-/// A time during which a pin is high.
+/// A span of time during which a pin is high.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Pulse {
     /// Cycle of the rising edge.
@@ -79,7 +79,7 @@ pub struct Pulse {
     pub width: u64,
 }
 
-/// Returns the complete pulses of one pin, without a pulse that has not ended.
+/// Returns the complete pulses of one pin: those whose rising and falling edge are among the edges.
 #[must_use]
 pub fn pulses(edges: &[Edge], pin: Pin) -> Vec<Pulse> {
     let mut rise = None;

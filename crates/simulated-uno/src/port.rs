@@ -1,12 +1,12 @@
 //! A simulated UNO that other programs can use like a board on USB: at a serial port, in
 //! real time.
 //!
-//! avrdude, a terminal program or a host tool cannot wait for a simulation that counts only cycles. Here the chip's
-//! time follows real time, and bytes go through a pseudo terminal such as /dev/pts/3. Opening it resets the chip,
+//! avrdude, a terminal program or a host tool expects a chip that runs in real time. Here the chip's time follows
+//! real time, and bytes go through a pseudo terminal such as /dev/pts/3. Opening the pseudo terminal resets the chip,
 //! as the DTR line of a USB cable does on a UNO.
 //!
-//! The speed that a program sets at the port is the speed of the line. If it differs from the chip's, both sides
-//! read other bytes than were sent. It is 115200 baud until a program sets it.
+//! The baud rate that a program sets at the port is the baud rate of the line, 115200 until a program sets it. If it
+//! differs from the chip's baud rate, both sides read other bytes than were sent.
 //!
 //! Two things differ from a cable. A second opening resets the chip only if all programs had closed the port. And
 //! toggling DTR while the port is open has no effect: programs that try it get `Inappropriate ioctl for device`.
@@ -21,7 +21,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`Port::in_background`] does the same on its own thread.
+//! [`Port::in_background`] serves the port on a thread of its own.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -36,13 +36,13 @@ use crate::{FREQUENCY, Radio, State, Uno};
 
 /// The time between two checks of the port, the same as in the UNO's USB chip.
 const TICK: Duration = Duration::from_millis(1);
-/// The longest simulated time that the chip catches up after this program was delayed. A longer one could let a
-/// watchdog expire before the other program has run.
+/// The longest simulated time that the chip catches up after this program was delayed. A longer time could let the
+/// chip's watchdog expire before the program at the port has run.
 const MAX_CATCH_UP: Duration = Duration::from_millis(20);
-/// The largest number of bytes on their way to the chip. Others wait in the pseudo terminal, as they wait in the
-/// driver of a USB port.
+/// The largest number of bytes on their way to the chip. Further bytes wait in the pseudo terminal, as bytes wait in
+/// the driver of a USB port.
 const MAX_UNSENT_BYTES: usize = 128;
-/// The largest number of bytes kept for a program that does not read. Later ones are lost.
+/// The largest number of bytes kept for a program that does not read. Later bytes are lost.
 const MAX_UNREAD_BYTES: usize = 1 << 16;
 
 /// A serial port of this machine with a simulated UNO behind it. The port exists until this value is dropped.
@@ -54,7 +54,8 @@ pub struct Port {
     is_open: bool,
     /// The radio module between the port and the chip; `None` for a cable.
     radio: Option<Radio>,
-    /// The wall clock's time and the chip's cycle at the same instant.
+    /// An instant of the wall clock and the chip's cycle at that instant, from which the chip's time is computed;
+    /// `None` until the chip runs.
     anchor: Option<(Instant, u64)>,
 }
 
@@ -73,8 +74,8 @@ impl Port {
         })
     }
 
-    /// Puts a radio module between the port and the chip: opening the port resets nothing, and its speed is the
-    /// module's.
+    /// Puts a radio module between the port and the chip. Then opening the port does not reset the chip, and the baud
+    /// rate is that of the module.
     #[must_use]
     pub fn by_radio(mut self, radio: Radio) -> Self {
         self.radio = Some(radio);
@@ -93,11 +94,11 @@ impl Port {
         self.is_open
     }
 
-    /// Runs `uno` in real time for `time` of the wall clock, and passes bytes between it and the program that has
-    /// the port open. A chip that has halted or crashed does nothing until the next opening resets it.
+    /// Runs `uno` in real time for `time` of the wall clock, and passes bytes between `uno` and the program that has
+    /// the port open. A chip that has halted or crashed does nothing until the next opening of the port resets it.
     ///
-    /// The caller should take the edges ([`Uno::take_edges`]): four servos produce 1600 bytes of them in a second.
-    /// The bytes of the serial line are not kept.
+    /// The caller should regularly take the edges ([`Uno::take_edges`]): those of four servos take 6400 more bytes of
+    /// memory every second. The bytes of the serial line are not kept.
     ///
     /// # Errors
     /// Returns the system's error if the pseudo terminal fails.
@@ -110,8 +111,8 @@ impl Port {
         Ok(())
     }
 
-    /// Serves the port on its own thread until [`Background::stop`]. `watch` gets the UNO every millisecond and
-    /// should take its edges; it must not block.
+    /// Serves the port on its own thread until [`Background::stop`]. Calls `watch` with the UNO every millisecond;
+    /// `watch` should take the UNO's edges and must not block.
     ///
     /// # Errors
     /// Fails if the system cannot start a thread.
@@ -172,7 +173,7 @@ impl Port {
                     .collect()
             }
         };
-        // Checks again, since this program may have been delayed meanwhile.
+        // The program at the port may have closed it meanwhile, so check again.
         if self.is_open && self.pty.is_open()? {
             self.unread.extend(arrived);
             self.unread.truncate(MAX_UNREAD_BYTES);
@@ -182,7 +183,8 @@ impl Port {
         Ok(())
     }
 
-    /// The cycle that the chip should have reached by now.
+    /// Returns the cycle that the chip should have reached by now, at most [`MAX_CATCH_UP`] ahead. A longer delay is
+    /// not caught up.
     fn target_cycle(&mut self, cycle: u64) -> u64 {
         let now = Instant::now();
         let (anchor_time, anchor_cycle) = *self.anchor.get_or_insert((now, cycle));
@@ -199,8 +201,8 @@ fn cycles(time: Duration) -> u64 {
     (time.as_nanos() * u128::from(FREQUENCY) / 1_000_000_000) as u64
 }
 
-/// A port with its UNO on their own thread. If it is dropped without [`Background::stop`], it continues until the
-/// program ends.
+/// A thread that serves a port and its UNO. If this value is dropped without [`Background::stop`], the thread
+/// continues until the program ends.
 #[derive(Debug)]
 pub struct Background {
     path: PathBuf,

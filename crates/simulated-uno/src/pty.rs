@@ -1,13 +1,14 @@
-//! A pseudo terminal: a serial port of this machine without a cable, whose other end is in this program.
+//! A pseudo terminal: a serial port of this machine without a cable. Another program opens the port, and this program
+//! reads and writes at the other side.
 //!
-//! It differs from a serial port in three ways. It has no DTR line, so this module watches the file to notice that
-//! it is opened. The speed that a program sets has no effect of its own, but can be read. And bytes that a program
-//! leaves unread would wait for the next program, while the driver of a real port discards them; so this module
-//! discards them.
+//! A pseudo terminal differs from a serial port in three ways. It has no DTR line, so this module watches the port's
+//! file to notice that a program opens it. The baud rate that a program sets has no effect, but can be read. And
+//! bytes that a program leaves unread would wait for the next program, while the driver of a real port discards
+//! them; so this module discards unread bytes.
 //!
-//! To discard them, this program opens the port itself for a moment. If another thread starts a program at that
-//! moment, the new process has a copy of all open files until it calls exec, and the port stays open as long as a
-//! copy exists. So this module waits until the port is really closed.
+//! To discard unread bytes, this module opens the port itself for a moment. If another thread starts a program at
+//! that moment, the new process has a copy of all open files until it calls exec, and the port stays open as long as
+//! a copy exists. So this module waits until the port is really closed.
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Read, Write};
@@ -23,7 +24,7 @@ use rustix::fs::{Mode, OFlags};
 use rustix::pty::{OpenptFlags, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, QueueSelector, tcflush, tcgetattr, tcsetattr};
 
-/// The speed until a program sets another one.
+/// The baud rate until a program sets another one.
 const BAUD: u32 = 115_200;
 /// The longest time from the fork to the exec of a new process, on a busy machine.
 const MAX_START_TIME: Duration = Duration::from_secs(10);
@@ -51,7 +52,7 @@ pub(crate) struct Pty {
 }
 
 impl Pty {
-    /// Returns a new pseudo terminal that passes bytes on unchanged.
+    /// Makes a new pseudo terminal that passes bytes on unchanged.
     ///
     /// # Errors
     /// Fails if the system has no pseudo terminals left, or no /dev/pts. Fails with [`ErrorKind::TimedOut`] if a
@@ -62,8 +63,8 @@ impl Pty {
         rustix::io::ioctl_fionbio(&ours, true)?;
         let name = ptsname(&ours, Vec::new())?;
         let path = PathBuf::from(name.to_string_lossy().into_owned());
-        // Until the port was opened and closed once, the system does not report that no program has it open. The
-        // settings survive the closing.
+        // The system reports that no program has the port open only after it was opened and closed once. The
+        // settings persist after the closing.
         let theirs = other_end(&path, OFlags::RDWR)?;
         let mut settings = tcgetattr(&theirs)?;
         settings.make_raw();
@@ -93,7 +94,7 @@ impl Pty {
         &self.path
     }
 
-    /// Checks the port. It notices every opening, however short the opening or the pause before it.
+    /// Checks the port. Notices every opening, however short, and however short the pause before it.
     ///
     /// # Errors
     /// Fails if the system is out of memory.
@@ -111,7 +112,7 @@ impl Pty {
         })?;
         let mut open = self.is_open()?;
         opened |= open && !was_open;
-        // If a program closes the port while another has it open, nothing changes.
+        // Unread bytes are discarded only if all programs have closed the port, not if another still has it open.
         if was_open && (opened || !open) {
             self.drop_unread()?;
             let now = self.is_open()?;
@@ -146,10 +147,10 @@ impl Pty {
         }
     }
 
-    /// Discards the bytes that the last program has not read, so that the next one does not get them.
+    /// Discards the bytes that the last program has not read, so that the next program does not get them.
     fn drop_unread(&self) -> io::Result<()> {
-        // The port cannot be opened while a program has exclusive use of it. Then that program has discarded what
-        // it found.
+        // The port cannot be opened while a program has exclusive use of it. Such a program has itself discarded
+        // the bytes that it found.
         let Ok(theirs) = other_end(&self.path, OFlags::RDONLY) else {
             return self.events(|_anything| {});
         };
@@ -165,12 +166,12 @@ impl Pty {
         self.events(|_rest| {})
     }
 
-    /// The speed that a program set last, baud.
+    /// The baud rate that a program has set last.
     ///
     /// # Errors
     /// Returns the system's error if the pseudo terminal fails.
     pub(crate) fn baud(&self) -> io::Result<f64> {
-        // Linux returns the settings of the other end. Speed 0 means "hang up".
+        // Linux returns the settings that programs have made at the port. Speed 0 means "hang up".
         Ok(match tcgetattr(&self.ours)?.output_speed() {
             0 => f64::from(BAUD),
             baud => f64::from(baud),
@@ -204,7 +205,7 @@ fn is_open(ours: &File) -> io::Result<bool> {
     Ok(!fds[0].revents().contains(PollFlags::HUP))
 }
 
-/// Waits until a condition holds, at most [`MAX_START_TIME`]. Returns false if it does not hold by then.
+/// Waits until a condition holds, at most [`MAX_START_TIME`]. Returns false if the condition does not hold by then.
 fn wait_until(mut condition: impl FnMut() -> io::Result<bool>) -> io::Result<bool> {
     let end = Instant::now() + MAX_START_TIME;
     while !condition()? {

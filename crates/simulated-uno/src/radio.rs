@@ -1,9 +1,10 @@
 //! A radio module on the serial line, such as an HM-10 or an HC-05.
 //!
-//! It replaces the cable between a host, such as a phone, and the chip. Bytes travel in packets of 20, each some
-//! milliseconds late, in order. A packet may be lost, and the link may end in the middle of a line and return
-//! seconds later. Then an HM-10 reports it in the line itself, as `OK+LOST` and `OK+CONN` without a line end; an
-//! HC-05 reports nothing. The module passes bytes on at its own rate, and it never resets the chip.
+//! The module replaces the cable between a host, such as a phone, and the chip. Bytes travel in packets of up to 20,
+//! in order, each packet delayed by 7.5 to 100 ms. A packet may be lost. The link may end in the middle of a line and
+//! begin again seconds later; an HM-10 reports both to the chip among the received bytes, as `OK+LOST` and `OK+CONN`
+//! without a line end, and an HC-05 reports nothing. The module passes bytes on at its own baud rate, and it never
+//! resets the chip.
 //!
 //! ```no_run
 //! # use simulated_uno::{Air, Fidelity, Radio, Uno};
@@ -26,28 +27,28 @@ use crate::{CYCLES_PER_MS, Uno};
 const PACKET_BYTES: usize = 20;
 /// The time that a packet travels, ms.
 const DELAY_MS: std::ops::Range<f64> = 7.5..100.0;
-/// The time for which a module collects the chip's bytes for a packet, ms.
+/// The longest time for which a module collects the chip's bytes for a packet, ms.
 const GATHERING_MS: u64 = 20;
-/// The time for which a link is interrupted, ms.
+/// The time between the end of a link and its next beginning, ms.
 const OUTAGE_MS: std::ops::Range<u64> = 200..5000;
 
 /// Properties of the radio link between a module and a phone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Air {
-    /// The rate of the module's serial line, baud.
+    /// The baud rate of the module's serial line.
     pub baud: f64,
     /// The share of packets that are lost, 0 to 1.
     pub loss: f64,
-    /// The mean duration of a link, ms; 0 if it does not end.
+    /// The mean duration of a link, ms; 0 if the link never ends.
     pub mean_link_ms: u64,
-    /// True if the module reports in the line when the link begins and ends.
+    /// True if the module sends `OK+CONN` and `OK+LOST` to the chip when the link begins and ends.
     pub reports_link: bool,
     /// The seed of the random numbers.
     pub seed: u64,
 }
 
 impl Default for Air {
-    /// A new module and a phone in the same room.
+    /// A module with its factory settings, and a phone in the same room.
     fn default() -> Self {
         Self {
             baud: 9600.0,
@@ -91,7 +92,8 @@ impl Flight {
         bytes
     }
 
-    /// Cuts the transmission: some bytes of the next packet arrive, the other packets are lost.
+    /// Interrupts the transmission: some bytes of the next packet arrive and are returned, the other packets are
+    /// lost.
     fn take_remains(&mut self, random: &mut fastrand::Rng) -> Vec<u8> {
         let packets = std::mem::take(&mut self.packets);
         let mut next = packets.into_iter().next().unwrap_or_default().1;
@@ -107,9 +109,9 @@ pub struct Radio {
     random: fastrand::Rng,
     to_uno: Flight,
     to_phone: Flight,
-    /// The chip's bytes that wait for a packet, and the cycle at which the first of them came.
+    /// The chip's bytes that wait until a packet is full, and the cycle from which they have waited.
     gathered: (Vec<u8>, u64),
-    /// The cycle at which the link ends next or, while there is no link, begins again.
+    /// The cycle at which the link ends or, while there is no link, begins again; `None` if that never happens.
     next_change: Option<u64>,
     is_in_reach: bool,
     has_left: bool,
@@ -139,27 +141,27 @@ impl Radio {
         self.is_in_reach
     }
 
-    /// The rate of the module's serial line, baud.
+    /// The baud rate of the module's serial line.
     #[must_use]
     pub fn baud(&self) -> f64 {
         self.air.baud
     }
 
-    /// Sends the phone's bytes at a cycle of the chip. Without a link, they are lost.
+    /// Sends the phone's bytes to the chip, beginning at the cycle `now`. Without a link, the bytes are lost.
     pub fn write(&mut self, bytes: &[u8], now: u64) {
         if self.is_in_reach {
             self.to_uno.send(bytes, now, self.air, &mut self.random);
         }
     }
 
-    /// Ends the link permanently: the phone moves out of range.
+    /// Ends the link permanently at the cycle `now`: the phone moves out of range.
     pub fn leave(&mut self, now: u64) {
         self.has_left = true;
         self.next_change = self.is_in_reach.then_some(now);
     }
 
-    /// Delivers the bytes that have arrived at the chip by now, and returns those for the phone. Must be called
-    /// every millisecond of the chip's time.
+    /// Takes the bytes that the UNO has transmitted, sends the UNO those that have arrived from the phone, and
+    /// returns those that have arrived at the phone. Must be called every millisecond of the chip's time.
     pub fn exchange(&mut self, uno: &mut Uno) -> Vec<u8> {
         uno.set_baud(self.air.baud);
         let sent: Vec<u8> = uno
@@ -173,7 +175,7 @@ impl Radio {
         to_phone
     }
 
-    /// The bytes as the module reads them at its own rate, if the chip sends them at `chip_baud`.
+    /// Returns the bytes as the module reads them at its own baud rate, if the chip sends `sent` at `chip_baud`.
     #[must_use]
     pub fn received_bytes(&self, sent: &[u8], chip_baud: f64) -> Vec<u8> {
         let ratio = chip_baud / self.air.baud;
@@ -202,7 +204,7 @@ impl Radio {
         [to_uno, self.to_phone.arrive(now)]
     }
 
-    /// Ends the link or begins it again.
+    /// Ends the link or begins it again. Returns the bytes that still arrive at the chip and at the phone.
     fn toggle_link(&mut self, now: u64) -> [Vec<u8>; 2] {
         self.is_in_reach = !self.is_in_reach;
         let mut to_uno = self.to_uno.take_remains(&mut self.random);

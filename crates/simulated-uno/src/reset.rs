@@ -30,10 +30,10 @@ pub struct Reset {
 }
 
 impl Uno {
-    /// Pulls the RESET pin low for an instant, as opening the serial port does. SRAM, EEPROM and r0 to r31 keep
-    /// their contents, and an EEPROM operation continues. The I/O registers take their reset values, and every pin
-    /// becomes an input and is recorded as low. A halted or crashed firmware runs again. There is no effect without
-    /// power, or while the supply is too low.
+    /// Pulls the RESET pin low for an instant, as opening the serial port does. SRAM, EEPROM and r0 to r31 keep their
+    /// contents, and an EEPROM operation continues. The I/O registers take their reset values, and every pin becomes
+    /// an input and is recorded as low. A halted or crashed firmware restarts. Has no effect without power, or while
+    /// the supply is too low.
     ///
     /// The chip's start-up delay (65 ms on a UNO) is not simulated.
     pub fn reset(&mut self) {
@@ -53,11 +53,11 @@ impl Uno {
         self.state = State::Alive;
     }
 
-    /// Simulates the effects of a boot loader like the UNO's, which runs before the firmware at each start: it
-    /// clears MCUSR, so that the firmware cannot see the cause of the reset, and switches the watchdog off. It
-    /// takes no time here; the real one waits a second after an external reset. If no cycle has passed yet, the
-    /// setting also applies to the present start. Off by default. With [`Fidelity::Stock`](crate::Fidelity) the
-    /// watchdog stays on.
+    /// Switches the simulated effects of a boot loader on or off; off by default. A boot loader such as the UNO's
+    /// runs before the firmware at each start. It clears MCUSR, so that the firmware cannot read the cause of the
+    /// reset, and switches the watchdog off. The simulated boot loader takes no time; the real one waits a second
+    /// after an external reset. If no cycle has passed yet, the setting also applies to the present start. With
+    /// [`Fidelity::Stock`](crate::Fidelity) the watchdog stays on.
     pub fn set_boot_loader(&mut self, is_present: bool) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps a flag, and
         // restarts a chip that has not begun.

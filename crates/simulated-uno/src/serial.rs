@@ -7,7 +7,8 @@ impl Uno {
     /// The sender's default baud rate; [`Uno::set_baud`] changes it.
     pub const BAUD: f64 = 115_200.0;
 
-    /// Runs until the UNO has sent a complete line, for at most `limit` cycles. Returns true if it has sent one.
+    /// Runs until the UNO has sent a complete line, for at most `limit` cycles. Returns false if the limit has passed
+    /// or the firmware has stopped.
     pub fn run_until_line(&mut self, limit: u64) -> bool {
         self.run_to(self.cycle() + limit, true)
     }
@@ -21,11 +22,12 @@ impl Uno {
     }
 
     /// Sends a line with its line end `\n`, and returns the next complete line that the UNO sends, without its line
-    /// end. `None` if the UNO sends none within a second of the chip's time, or if the firmware has stopped.
+    /// end. `None` if the UNO sends no complete line within a second of the chip's time, or if the firmware has
+    /// stopped.
     ///
-    /// Takes all that the UNO has transmitted, before and meanwhile, as [`Uno::take_transmitted`] does. The rest of
-    /// a line that the UNO began earlier counts as the answer. With a firmware that sends lines on its own, use
-    /// [`Uno::send`] and [`Uno::run_until_line`].
+    /// Removes all bytes that the UNO has transmitted before and during the call, as [`Uno::take_transmitted`] does.
+    /// The rest of a line that the UNO began earlier counts as the answer. With a firmware that sends lines on its
+    /// own, use [`Uno::send`] and [`Uno::run_until_line`].
     pub fn say(&mut self, line: &str) -> Option<String> {
         self.take_transmitted();
         self.send(line.as_bytes());
@@ -39,15 +41,15 @@ impl Uno {
         Some(text.trim_end_matches(['\r', '\n']).to_owned())
     }
 
-    /// Sends bytes as [`Uno::send`] does, but with the line low in place of each stop bit, as after noise or a
-    /// missed start bit. Each byte arrives with a framing error, FE0 in UCSR0A. The next byte begins as usual.
+    /// Queues bytes as [`Uno::send`] does, but with the line low in place of each stop bit, as after noise or a
+    /// missed start bit. Each byte arrives with a framing error, FE0 in UCSR0A.
     pub fn send_with_framing_error(&mut self, bytes: &[u8]) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim copies `len` bytes from
         // a slice that has them.
         unsafe { ffi::uno_send(self.raw, bytes.as_ptr(), bytes.len(), true) }
     }
 
-    /// Saturates the serial line: repeats `bytes` forever as soon as the queue is empty. An empty slice ends the
+    /// Saturates the serial line: sends `bytes` repeatedly whenever the queue is empty. An empty slice ends the
     /// flood.
     pub fn flood(&mut self, bytes: &[u8]) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim copies `len` bytes from
@@ -69,28 +71,28 @@ impl Uno {
         unsafe { ffi::uno_set_baud(self.raw, baud) }
     }
 
-    /// The present baud rate of the chip's USART, from its registers.
+    /// The present baud rate of the chip's USART, computed from its registers.
     #[must_use]
     pub fn chip_baud(&self) -> f64 {
         // SAFETY: `raw` is valid, see `Uno`; the shim reads registers.
         FREQUENCY as f64 / f64::from(unsafe { ffi::uno_cycles_per_bit(self.raw) })
     }
 
-    /// The number of queued bytes that have not arrived yet.
+    /// The number of queued bytes that have not arrived at the UNO yet.
     #[must_use]
     pub fn unsent(&self) -> usize {
         // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
         unsafe { ffi::uno_unsent(self.raw) }
     }
 
-    /// The number of bytes sent so far, including those of a flood.
+    /// The number of bytes sent to the UNO so far, including those of a flood.
     #[must_use]
     pub fn bytes_sent(&self) -> u64 {
         // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
         unsafe { ffi::uno_sent(self.raw) }
     }
 
-    /// The number of bytes lost because the firmware read UDR0 too late. Always 0 in
+    /// The number of bytes lost because the firmware read UDR0 too late. Always 0 with
     /// [`Fidelity::Stock`](crate::Fidelity::Stock).
     #[must_use]
     pub fn overruns(&self) -> u64 {
@@ -98,19 +100,19 @@ impl Uno {
         unsafe { ffi::uno_overruns(self.raw) }
     }
 
-    /// The bytes transmitted by the UNO since the last [`Uno::take_transmitted`].
+    /// The bytes transmitted by the UNO since power-on or the last [`Uno::take_transmitted`].
     #[must_use]
     pub fn transmitted(&self) -> Vec<SerialByte> {
         self.list(ffi::uno_transmitted)
     }
 
-    /// Takes the bytes transmitted since the last call.
+    /// Removes and returns the bytes that the UNO has transmitted since power-on or the last call.
     pub fn take_transmitted(&mut self) -> Vec<SerialByte> {
         self.take(ffi::uno_transmitted)
     }
 
-    /// All bytes that have arrived at the UNO, including lost ones, each with the cycle at which it was complete. A
-    /// byte with a framing error is 0xff.
+    /// All bytes that have arrived at the UNO, including those lost by an overrun, each with the cycle at which it
+    /// was complete. A byte with a framing error is 0xff.
     #[must_use]
     pub fn received_by_uno(&self) -> Vec<SerialByte> {
         self.list(ffi::uno_received)

@@ -1,7 +1,7 @@
 //! The supply voltage of the chip, for both VCC and AVCC.
 //!
-//! Servos on a weak supply make its voltage drop in mid-step. A firmware can measure that only by the ADC, and
-//! below the brown-out level it does not run at all.
+//! Servos on a weak supply make its voltage drop while they move. A firmware can measure the drop only with the ADC,
+//! and below the brown-out level it does not run at all.
 
 use crate::Uno;
 use crate::ffi;
@@ -24,9 +24,10 @@ impl Uno {
 
     /// Changes the supply voltage linearly to `mv` within `cycles` from now.
     ///
-    /// Below the brown-out level (minus half the hysteresis of 50 mV) the chip is held in reset: pins are inputs,
-    /// time passes. Above it (plus the other half) the program starts, with BORF set. Below 1.8 V the byte of an
-    /// EEPROM operation in progress is torn. Below 1.3 V the SRAM is lost, and the next start is a power-on.
+    /// Below the brown-out level minus half the hysteresis of 50 mV, the chip is held in reset: its pins are inputs,
+    /// and time passes. Above the brown-out level plus half the hysteresis, the program starts, with BORF set. Below
+    /// 1.8 V the byte of an EEPROM operation in progress is torn. Below 1.3 V the contents of SRAM are lost, and the
+    /// next start is a power-on.
     ///
     /// With [`Fidelity::Stock`](crate::Fidelity) the ADC measures `mv` at once, and nothing is ever reset.
     ///
@@ -42,8 +43,9 @@ impl Uno {
         unsafe { ffi::uno_ramp_supply(self.raw, mv, cycles) }
     }
 
-    /// Sets the brown-out level in mV, or none. The default is 2700 mV, as set by the UNO's fuses; the level of a
-    /// given chip may be 2500 to 2900 mV. Without one, the chip runs down to 1.3 V and starts above 1.4 V.
+    /// Sets the brown-out level in mV; `None` disables brown-out detection. The default is 2700 mV, as set by the
+    /// UNO's fuses; the level of a given chip may be 2500 to 2900 mV. Without brown-out detection, the chip runs down
+    /// to 1.3 V and starts above 1.4 V.
     pub fn set_brown_out_mv(&mut self, level: Option<f64>) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps a number.
         unsafe { ffi::uno_set_brown_out(self.raw, level.unwrap_or(0.0)) }

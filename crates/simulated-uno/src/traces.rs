@@ -14,7 +14,7 @@ pub struct SerialByte {
     pub byte: u8,
 }
 
-/// A store to GPIOR0: a mark in the record, at a cost of one cycle of the firmware.
+/// A store to GPIOR0, with which a firmware marks an event in the record at the cost of one cycle.
 // `struct mark` of the shim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(C)]
@@ -39,13 +39,13 @@ pub struct Call {
 }
 
 impl Call {
-    /// Cycles from entry to return, including interrupts.
+    /// Cycles from the first instruction to the return, including interrupts.
     #[must_use]
     pub fn cycles(&self) -> u64 {
         self.leave - self.enter
     }
 
-    /// Cycles of the function without interrupts.
+    /// Cycles from the first instruction to the return, without interrupts.
     #[must_use]
     pub fn own_cycles(&self) -> u64 {
         self.cycles() - self.interrupted
@@ -55,15 +55,15 @@ impl Call {
 /// Statistics of one interrupt: the number of times that it was served, and the cycles of its handler.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct VectorUse {
-    /// The vector number: that of the data sheet's table minus one (0 is reset).
+    /// The vector number, counted from 0 (reset), while the data sheet's table counts from 1.
     pub vector: u8,
     /// The number of times that the interrupt was served.
     pub entries: u64,
-    /// The sum of the cycles in its handler.
+    /// The sum of the cycles in the interrupt's handler.
     pub cycles: u64,
 }
 
-/// Returns the data sheet's name of an interrupt vector.
+/// Returns the data sheet's name of an interrupt vector, `?` if the chip has no such vector.
 #[must_use]
 pub fn vector_name(vector: u8) -> &'static str {
     const NAMES: &str = "RESET INT0 INT1 PCINT0 PCINT1 PCINT2 WDT TIMER2_COMPA TIMER2_COMPB TIMER2_OVF \

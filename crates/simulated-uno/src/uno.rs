@@ -9,7 +9,7 @@ use crate::image::{Image, LoadError, SRAM_END};
 use crate::traces::{Call, Mark, VectorUse};
 use crate::{CYCLES_PER_MS, Edge, FREQUENCY, Pin, Pulse};
 
-/// The model of the chip: stock simavr, or with corrections.
+/// The model of the chip: stock simavr, or simavr with corrections.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Fidelity {
     /// Stock simavr 1.6: entering an interrupt takes no time, received bytes are never lost, 16-bit registers
@@ -23,7 +23,7 @@ pub enum Fidelity {
     DataSheet,
 }
 
-/// The state of the firmware.
+/// The state of the simulated chip and its firmware.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum State {
     /// Running, or asleep with interrupts enabled.
@@ -37,7 +37,7 @@ pub enum State {
         /// simavr's message.
         message: String,
     },
-    /// Without power, since [`Uno::cut_power`]; see [`Uno::power_cycle`].
+    /// Without power after [`Uno::cut_power`], until [`Uno::power_cycle`].
     Off,
 }
 
@@ -60,7 +60,8 @@ pub struct Uno {
 unsafe impl Send for Uno {}
 
 impl Uno {
-    /// Returns a board with this ELF file in flash, at the moment of power-on.
+    /// Returns a board with the program of this file in flash, at the moment of power-on. The file is read by
+    /// [`Image::read`].
     ///
     /// # Errors
     /// See [`LoadError`].
@@ -99,14 +100,14 @@ impl Uno {
         &self.image
     }
 
-    /// Cycles since power-on.
+    /// The number of cycles since power-on.
     #[must_use]
     pub fn cycle(&self) -> u64 {
         // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
         unsafe { ffi::uno_now(self.raw) }
     }
 
-    /// Milliseconds since power-on.
+    /// The chip's time since power-on, ms.
     #[must_use]
     pub fn ms(&self) -> f64 {
         self.cycle() as f64 / CYCLES_PER_MS as f64
@@ -118,8 +119,8 @@ impl Uno {
         &self.state
     }
 
-    /// Runs until cycle `until`, or a few hundred cycles longer if an instruction re-arms a timer at the end. A run
-    /// in several parts gives the same result as one long run.
+    /// Runs until the cycle `until`, or a few hundred cycles longer if an instruction re-arms a timer just before
+    /// `until`. Several short runs give the same result as one long run.
     pub fn run_until_cycle(&mut self, until: u64) -> &State {
         self.run_to(until, false);
         &self.state
@@ -130,13 +131,13 @@ impl Uno {
         self.run_until_cycle(self.cycle() + cycles)
     }
 
-    /// Runs for a number of milliseconds.
+    /// Runs for a number of milliseconds of the chip's time. See [`Uno::run_until_cycle`].
     pub fn run_ms(&mut self, ms: u64) -> &State {
         self.run_cycles(ms * CYCLES_PER_MS)
     }
 
-    /// Runs until the predicate holds, and checks it every `step` cycles. Returns true if it holds, and false if
-    /// `limit` cycles have passed or the firmware has stopped.
+    /// Runs until the predicate holds; checks the predicate every `step` cycles. Returns true if it holds, and false
+    /// if `limit` cycles have passed or the firmware has stopped.
     pub fn run_until(
         &mut self,
         limit: u64,
@@ -180,13 +181,13 @@ impl Uno {
         false
     }
 
-    /// Edges of D2 to D13 and A0 to A5 since power-on or the last [`Uno::take_edges`].
+    /// The edges of D2 to D13 and A0 to A5 since power-on or the last [`Uno::take_edges`].
     #[must_use]
     pub fn edges(&self) -> Vec<Edge> {
         self.list(ffi::uno_edges)
     }
 
-    /// Takes the edges recorded since the last call.
+    /// Removes and returns the edges recorded since power-on or the last call.
     pub fn take_edges(&mut self) -> Vec<Edge> {
         self.take(ffi::uno_edges)
     }
@@ -205,13 +206,13 @@ impl Uno {
         levels & (1 << pin.number()) != 0
     }
 
-    /// Stores to GPIOR0 since power-on or the last [`Uno::take_marks`].
+    /// The firmware's stores to GPIOR0 since power-on or the last [`Uno::take_marks`].
     #[must_use]
     pub fn marks(&self) -> Vec<Mark> {
         self.list(ffi::uno_marks)
     }
 
-    /// Takes the marks recorded since the last call.
+    /// Removes and returns the marks recorded since power-on or the last call.
     pub fn take_marks(&mut self) -> Vec<Mark> {
         self.take(ffi::uno_marks)
     }
@@ -229,14 +230,14 @@ impl Uno {
         self.take(ffi::uno_calls)
     }
 
-    /// The number of cycles asleep since power-on.
+    /// The number of cycles since power-on in which the CPU slept.
     #[must_use]
     pub fn asleep_cycles(&self) -> u64 {
         // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
         unsafe { ffi::uno_asleep(self.raw) }
     }
 
-    /// The number of cycles awake since power-on.
+    /// The number of cycles since power-on in which the CPU did not sleep.
     #[must_use]
     pub fn awake_cycles(&self) -> u64 {
         self.cycle() - self.asleep_cycles()
@@ -287,7 +288,7 @@ impl Uno {
         data.get(usize::from(address)).copied().unwrap_or(0)
     }
 
-    /// The interrupts served so far, without those that were never served.
+    /// Statistics of every interrupt that has been served at least once.
     #[must_use]
     pub fn interrupts(&self) -> Vec<VectorUse> {
         // SAFETY: `raw` is valid, see `Uno`. It is an array of `VECTORS` items inside the
@@ -306,7 +307,7 @@ impl Uno {
         .collect()
     }
 
-    /// Seconds since power-on.
+    /// The chip's time since power-on, s.
     #[must_use]
     pub fn seconds(&self) -> f64 {
         self.cycle() as f64 / FREQUENCY as f64

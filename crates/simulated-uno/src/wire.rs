@@ -1,25 +1,25 @@
 //! A wire with two senders, such as the UNO's D0 where a radio module shares it with USB.
 //!
-//! Each sender can pull the wire low; otherwise the wire is high. If both send at once, their bits mix, and the
-//! receiver reads bytes that neither has sent, some without a stop bit. Pass the bytes that it reads to
+//! The wire is high while no sender pulls it low. If both send at once, their bits mix, and the receiver reads bytes
+//! that neither has sent, some without a stop bit. Pass the bytes that the receiver reads to
 //! [`Uno::send`](crate::Uno::send) and [`Uno::send_with_framing_error`](crate::Uno::send_with_framing_error).
 
 use std::collections::VecDeque;
 
 use crate::FREQUENCY;
 
-/// Bits of a byte: start, eight data bits, stop.
+/// The number of bits of a byte on the wire: a start bit, eight data bits and a stop bit.
 const FRAME: f64 = 10.0;
-/// The middle of the stop bit, in bits, at which a receiver has finished a byte.
+/// The time from the start of a byte to the middle of its stop bit, at which a receiver has read the byte; in bits.
 const STOP_BIT_MIDDLE: f64 = 9.5;
-/// Bytes of each sender that are searched for edges: more than the fastest sends while the slowest receiver reads
-/// one.
+/// Number of bytes of each sender that are searched for edges: more than the fastest sender sends while the slowest
+/// receiver reads one byte.
 const NEAR_BYTES: usize = 16;
 
 /// A byte on the wire.
 #[derive(Debug, Clone, Copy)]
 struct Frame {
-    /// The cycle at which its start bit begins.
+    /// The cycle at which the byte's start bit begins.
     start: f64,
     /// Duration of a bit, cycles.
     bit: f64,
@@ -43,14 +43,14 @@ impl Frame {
 pub struct Wire {
     /// Duration of a bit of each sender, cycles.
     bits: [f64; 2],
-    /// The bytes of each sender, in order.
+    /// The bytes of each sender that may still be read, in order.
     talkers: [VecDeque<Frame>; 2],
-    /// The cycle from which the receiver looks for the next byte.
+    /// The cycle from which the receiver waits for the next start bit.
     idle_from: f64,
 }
 
 impl Wire {
-    /// Returns an idle wire, given the rates of both senders, baud.
+    /// Returns an idle wire for two senders with these baud rates.
     #[must_use]
     pub fn new(rates: [f64; 2]) -> Self {
         Self {
@@ -60,7 +60,7 @@ impl Wire {
         }
     }
 
-    /// Queues bytes of a sender, 0 or 1, which sends them back to back from this cycle on.
+    /// Queues bytes of a sender, 0 or 1, which sends them back to back from the cycle `now` on.
     pub fn write(&mut self, talker: usize, bytes: &[u8], now: u64) {
         let bit = self.bits[talker];
         for byte in bytes {
@@ -74,8 +74,8 @@ impl Wire {
         }
     }
 
-    /// Returns the bytes that a receiver of this rate has read since the last call, until now; `None` for a byte
-    /// without a stop bit.
+    /// Returns the bytes that a receiver of this baud rate has read since the last call, until the cycle `now`;
+    /// `None` for a byte without a stop bit.
     pub fn receive(&mut self, now: u64, baud: f64) -> Vec<Option<u8>> {
         let bit = FREQUENCY as f64 / baud;
         let mut received = Vec::new();
@@ -97,7 +97,8 @@ impl Wire {
         received
     }
 
-    /// Returns the next time at which the wire goes from high to low.
+    /// Returns the next cycle at which the wire changes from high to low; `None` if the senders have no further
+    /// bytes.
     fn next_fall(&self) -> Option<f64> {
         let edges = self.pending_frames().flat_map(|frame| {
             (0..9).map(|index| (frame.start + f64::from(index) * frame.bit, frame.bit))
@@ -113,7 +114,7 @@ impl Wire {
             .min_by(f64::total_cmp)
     }
 
-    /// Returns the bytes that may be on the wire until the next one is read.
+    /// Returns the bytes that may be on the wire while the receiver reads its next byte.
     fn pending_frames(&self) -> impl Iterator<Item = &Frame> {
         self.talkers
             .iter()
@@ -129,7 +130,7 @@ impl Wire {
 mod tests {
     use super::*;
 
-    /// Duration of a byte, cycles.
+    /// Duration of a byte at 115200 baud, cycles.
     const BYTE: u64 = 1389;
 
     fn received(writes: &[(usize, &[u8], u64)]) -> Vec<Option<u8>> {
@@ -194,7 +195,8 @@ mod tests {
     #[test]
     fn a_fast_byte_at_a_slow_receiver_is_one_of_its_bits() {
         let mut wire = Wire::new([115_200.0; 2]);
-        // Twelve bits of the sender last as long as one of the receiver, which samples it in the sixth or seventh.
+        // Twelve bits of the sender last as long as one bit of the receiver. So the sender's whole byte lies within
+        // the receiver's start bit.
         wire.write(0, &[0x00], 0);
         assert_eq!(wire.receive(1_000_000, 9_600.0), [Some(0xff)]);
     }

@@ -1,7 +1,8 @@
 //! Tests of a simulated UNO behind a serial port, as another program uses it.
 //!
-//! This is a separate test binary: a process that another test forks would inherit the open port until its `exec`.
-//! Then closing the port here would not close the last copy, and reopening it would not reset the board.
+//! This is a separate test binary: a process that a test of another module forks would have a copy of the open port
+//! until its `exec`. Then closing the port here would not close the last copy, and reopening it would not reset the
+//! board.
 
 use std::fs::{File, OpenOptions};
 use std::io::{Read, Write};
@@ -14,8 +15,8 @@ use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 use simulated_uno::avr_gcc;
 use simulated_uno::{Background, CYCLES_PER_MS, FREQUENCY, Fidelity, Image, Pin, Port, Uno};
 
-/// Program that sends `<r` at reset, then sends every byte back, plus one. D9 is high from reset on. GPIOR0 counts
-/// resets through a variable that a reset does not clear.
+/// Program that sends `<r` at reset, then answers every byte with that byte plus one. D9 is high from reset on. Each
+/// start is marked with the number of starts since power-on, from a variable that a reset does not clear.
 const ECHO: &str = r#"
     #include <avr/io.h>
     static volatile unsigned char starts __attribute__((section(".noinit")));
@@ -37,7 +38,7 @@ const ECHO: &str = r#"
         }
     }"#;
 
-/// The compiled program. [`echo`] forces the compilation before any port opens.
+/// The compiled program [`ECHO`]. [`echo`] compiles it before a test opens its port.
 static IMAGE: LazyLock<Image> = LazyLock::new(|| avr_gcc::c(ECHO));
 
 fn echo() -> Uno {
@@ -94,7 +95,7 @@ fn bytes_pass_both_ways_as_they_are() {
     let board = serve_board();
     let mut port = open(board.path());
     assert_eq!(read(&port, 2), "<r");
-    // Bytes that a terminal would remove or change: CR, LF, interrupt, end of file.
+    // Bytes that a terminal would remove or change: CR, LF, interrupt, end of file, delete.
     port.write_all(b"\r\n\x03\x04\x7f").expect("it takes bytes");
     assert_eq!(read(&port, 5), "\x0e\x0b\x04\x05\u{fffd}");
     drop(port);
@@ -111,7 +112,8 @@ fn a_program_at_another_speed_than_the_chip_reads_other_bytes() {
     tcsetattr(&port, OptionalActions::Now, &settings).expect("settings accepted");
     port.write_all(b"0").expect("it takes bytes");
     // The chip reads 0, as tests/data_sheet/serial.rs explains, and sends 1. The host samples that byte at half the
-    // rate: at 3.1, 5.1 and 7.1 of the chip's bits, which are 0, then in the stop bit and on the idle line.
+    // chip's baud rate: at 3.1, 5.1 and 7.1 of the chip's bits, which are 0, then in the stop bit and on the idle
+    // line.
     assert_eq!(bytes(&port, 1), [0b1111_1000]);
     drop(port);
     stop_board(board);
@@ -185,8 +187,8 @@ fn the_chip_keeps_time_with_the_wall_clock() {
     serve(&mut port, &mut uno, 100);
     let wall = start.elapsed().as_secs_f64();
     let chip = uno.cycle() as f64 / FREQUENCY as f64;
-    // The chip is never ahead by more than the current time slice. It may lag by any amount on a loaded machine, so
-    // the test checks only the lead.
+    // The chip is never ahead of the wall clock by more than one time slice. On a loaded machine it may lag by any
+    // amount, so the test checks only the lead.
     assert!(chip <= wall + 0.01, "{chip} s in {wall} s");
 }
 

@@ -1,5 +1,5 @@
-//! Test of a simulated UNO behind a serial port, in a program that starts other programs all the time. Each new
-//! process has a copy of every open file between `fork` and `exec`, but no copy may keep the port open.
+//! Test of a simulated UNO behind a serial port, in a program that constantly starts other programs. Each new
+//! process has a copy of every open file between `fork` and `exec`, but such a copy must not keep the port open.
 
 use std::process::Command;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -25,7 +25,7 @@ const HELLO: &str = r#"
 /// Shell script that opens the port in its argument, reads two bytes and closes it.
 const READER: &str = r#"exec 3<>"$0"; head -c 2 <&3"#;
 
-/// The smallest number of openings, and of other programs started meanwhile.
+/// The smallest number of openings, and the smallest number of other programs started during them.
 const MIN_OPENINGS: usize = 150;
 
 static STARTED: AtomicUsize = AtomicUsize::new(0);

@@ -1,4 +1,4 @@
-//! Tests of the program `simulated-uno`, as its user runs it.
+//! Tests of the program `simulated-uno`, run from the command line.
 
 use std::fs;
 use std::path::Path;
@@ -57,7 +57,7 @@ fn program(folder: &Path, source: &str) -> [std::path::PathBuf; 2] {
     [elf, hex]
 }
 
-/// Compiles a source and runs it as Intel HEX.
+/// Compiles a source and runs `simulated-uno` with its Intel HEX file.
 fn run_source(source: &str, arguments: &[&str]) -> Output {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let [_, hex] = program(folder.path(), source);
@@ -72,7 +72,7 @@ fn text(bytes: &[u8]) -> String {
 fn a_hex_file_and_its_elf_give_the_same_pulses() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let [elf, hex] = program(folder.path(), PULSES);
-    // Intel HEX does not say where the room for the stack begins.
+    // Intel HEX does not contain the size of the static data, so the report omits the memory.
     for (file, memory) in [(elf, true), (hex, false)] {
         let output = run(&file, &["--ms", "100"]);
         assert!(output.status.success(), "{output:?}");

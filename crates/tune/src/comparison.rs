@@ -7,22 +7,22 @@ use serde::Serialize;
 use crate::judge::{BuiltGait, Judge};
 use crate::variation::quantiles;
 
-/// Two gaits on the same random robots.
+/// Speeds of the given gait and of the gait that was found, on the same random robots.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Comparison {
     /// Unit of the speeds: mm/s, or deg/s for a turn.
     pub unit: &'static str,
     /// Largest servo speed that both gaits may use, deg/s.
     pub rate: f64,
-    /// The given gait, at the pace at which its fastest servo has that speed.
+    /// The given gait, at the pace at which its fastest servo has the speed `rate`.
     pub gait: Figures,
     /// The gait that was found.
     pub tuned: Figures,
-    /// Number of random robots on which both were walked.
+    /// Number of random robots on which both gaits were simulated.
     pub robots: usize,
-    /// Number of robots on which the gait that was found is faster.
+    /// Number of robots on which the gait that was found is faster than the given gait.
     pub faster: usize,
-    /// Table of the gait that was found, for robot.toml.
+    /// Table of robot.toml that defines the gait that was found.
     pub fragment: String,
 }
 
@@ -33,22 +33,22 @@ pub struct Figures {
     pub name: String,
     /// Time of a cycle, s.
     pub period: f64,
-    /// Speed of its fastest servo, deg/s.
+    /// Speed of the fastest servo, deg/s.
     pub rate: f64,
-    /// Name and value of its smallest margin; the value is the sine of an angle.
+    /// Name and value of the gait's smallest margin; the value is the sine of an angle.
     pub margin: (&'static str, f64),
-    /// Speed by the contact model, with ideal servos.
+    /// Speed by the contact model, with ideal servos, mm/s or deg/s.
     pub predicted: f64,
-    /// Speed frame by frame as the firmware sends it, with SG-90 and their dead band.
+    /// Speed with SG-90 servos and their dead band, simulated frame by frame, mm/s or deg/s.
     pub sg90: f64,
-    /// Speeds on random robots: 5 %, half and 95 % of them are slower.
+    /// Speeds on the random robots, mm/s or deg/s: 5 %, 50 % and 95 % of the robots are slower.
     pub speeds: [f64; 3],
 }
 
 impl Comparison {
-    /// Walks both gaits on the judge's robots.
+    /// Simulates both gaits on the judge's robots, at paces at which their fastest servos turn at `rate` (deg/s).
     pub(crate) fn of(judge: &Judge, rate: f64, gait: &CheckedGait, found: &BuiltGait) -> Self {
-        // At another pace the gait covers the same distance in another time.
+        // At another pace the gait covers the same distance, so only its period changes.
         let paced = gait.audit().peak.speed / rate;
         let (before, all_before) = Figures::of(judge, gait, paced);
         let (tuned, all_tuned) = Figures::of(judge, found.gait(), 1.0);
@@ -68,19 +68,20 @@ impl Comparison {
         }
     }
 
-    /// True if the gait that was found has the higher 5 % value, and is faster on more than half of the robots.
+    /// True if the speed that 95 % of the robots exceed is higher with the gait that was found, and if that gait is
+    /// faster on more than half of the robots.
     pub fn is_better(&self) -> bool {
         self.tuned.speeds[0] > self.gait.speeds[0] && 2 * self.faster > self.robots
     }
 
-    /// Gain in the speed that 95 % of the robots exceed, as a share of the given gait's.
+    /// Gain in the speed that 95 % of the robots exceed, as a share of that speed of the given gait.
     pub fn gain(&self) -> f64 {
         self.tuned.speeds[0] / self.gait.speeds[0] - 1.0
     }
 }
 
 impl Figures {
-    /// Walks a gait whose period is multiplied by `paced`; also returns its speed on each robot.
+    /// Simulates a gait whose period is multiplied by `paced`; also returns its speed on each robot.
     fn of(judge: &Judge, gait: &CheckedGait, paced: f64) -> (Self, Vec<f64>) {
         let period = gait.period() * paced;
         let audit = gait.audit();

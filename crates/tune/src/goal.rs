@@ -1,10 +1,10 @@
-//! The goal of a gait: to go straight, or to turn on the spot.
+//! The goal of a gait: to walk straight, or to turn on the spot.
 
 use lizard_robot::servo::LEGS;
 use lizard_robot::{CheckedGait, Ground, Travel};
 use thiserror::Error;
 
-/// Smallest movement in a cycle that is not regarded as zero: mm, deg.
+/// Smallest movement in a cycle that is not regarded as zero: distance in mm, turn in deg.
 const MIN_MOVEMENT: (f64, f64) = (1.0, 0.5);
 
 fn is_left(servo: usize) -> bool {
@@ -15,10 +15,10 @@ fn is_front(servo: usize) -> bool {
     LEGS[servo].ends_with('F')
 }
 
-/// The error for a gait that has no goal, with the gait's name.
+/// The error for a gait that has no goal; contains the gait's name.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum GoalError {
-    /// The gait's movement depends on a tie between two pairs of feet.
+    /// The gait's movement depends on unmeasurable differences between the pads: two feet pull against two.
     #[error(
         "the direction of the gait `{0}` is undecided, since two feet pull against two; tune another gait"
     )]
@@ -34,7 +34,7 @@ pub enum GoalError {
     Arc(String),
 }
 
-/// The direction of a gait's movement, with a sign: forward and to the left are positive.
+/// The direction of a gait's movement, with a sign: positive for forward and for a turn to the left.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Goal {
     /// Straight forward or backward.
@@ -46,8 +46,8 @@ pub enum Goal {
 impl Goal {
     /// Derives the goal of a gait from its movement on rigid legs.
     ///
-    /// # Errors
-    /// Fails for a gait that stands, goes along a curve, or depends on ties.
+    /// # Errors Fails for a gait that stands, walks along a curve, or whose movement depends on unmeasurable
+    /// differences between the pads.
     pub fn of(gait: &CheckedGait, ground: &Ground) -> Result<Self, GoalError> {
         let name = || gait.name().to_owned();
         let movement = gait.predict(&ground.rigid());
@@ -74,7 +74,7 @@ impl Goal {
         }
     }
 
-    /// True if a movement has almost no component in other directions.
+    /// True if a movement has almost no component other than that towards this goal.
     pub fn is_true_to(self, movement: &Travel) -> bool {
         match self {
             Self::Ahead(_) => {
@@ -84,7 +84,7 @@ impl Goal {
         }
     }
 
-    /// 1 for a leg that strokes backward while it pushes, -1 for one that strokes forward.
+    /// Returns the sign of a leg's stroke: 1 if the leg moves backward in stance, -1 if it moves forward.
     pub fn sign(self, servo: usize) -> f64 {
         match self {
             Self::Ahead(sign) => sign,
@@ -99,7 +99,7 @@ impl Goal {
         }
     }
 
-    /// Index of the pair of legs that a leg belongs to: 0 for the pair that contains LH.
+    /// Returns the index of the pair of legs that a leg belongs to: 0 for the pair that contains LH, else 1.
     pub fn pair(self, servo: usize) -> usize {
         match self {
             Self::Ahead(_) => usize::from(is_front(servo)),
@@ -107,7 +107,7 @@ impl Goal {
         }
     }
 
-    /// Unit of the speed towards this goal.
+    /// Returns the unit of the speed towards this goal.
     pub const fn unit(self) -> &'static str {
         match self {
             Self::Ahead(_) => "mm/s",

@@ -1,5 +1,5 @@
 //! The score of a gait. The gait is computed and checked like any gait of robot.toml, at the pace at which its
-//! fastest servo turns at the speed limit, and then walked on random robots.
+//! fastest servo turns at the speed limit, and then simulated on random robots.
 
 use lizard_robot::{Bars, CheckedGait, Ground, Robot, Travel};
 use lizard_twin::ServoModel;
@@ -8,18 +8,19 @@ use crate::goal::Goal;
 use crate::plan::{Kind, MAX_PERIOD_S, Space, planned};
 use crate::variation::{Variation, quantiles};
 
-/// Bounds of the search for a robot's largest amplitude, deg.
+/// Bounds between which a robot's largest amplitude is searched, deg.
 const WIDTHS: (f64, f64) = (5.0, 80.0);
-/// The servos of the random robots, with a dead band, because it takes a larger share of small strides.
+/// The servos of the random robots. They have a dead band, which reduces small strides by a larger share than wide
+/// ones.
 const SERVOS: ServoModel = ServoModel::SG90;
-/// A period so long that no servo exceeds its speed limit, for measuring their speed, s.
+/// A period at which no servo exceeds its speed limit, s. The gait's servo speed is measured at this period.
 const SLOW_PERIOD_S: f64 = 3.0;
 /// Number of iterations that fit the period to the servo speed.
 const PERIOD_ITERATIONS: usize = 3;
-/// The share of the robots that may be slower than the score says.
+/// The share of the robots that are slower than the score.
 const SLOWEST_SHARE: f64 = 0.05;
 
-/// A gait with its period and its table for robot.toml.
+/// A gait of the search, built and checked, with its table for robot.toml.
 #[derive(Debug, Clone)]
 pub struct BuiltGait {
     /// The robot with only this gait and `stand`.
@@ -28,8 +29,8 @@ pub struct BuiltGait {
 }
 
 impl BuiltGait {
-    /// Builds a gait with the shortest period at which no servo is faster than `rate` (deg/s). Returns `None` if a
-    /// limit of the robot forbids it.
+    /// Builds a gait with the shortest period at which no servo is faster than `rate` (deg/s). Returns `None` if the
+    /// gait breaks a limit of the robot, or if that period is longer than [`MAX_PERIOD_S`].
     pub(crate) fn of(robot: &Robot, bars: &Bars, rate: f64) -> Option<Self> {
         let build = |period: f64| {
             let bars = Bars {
@@ -53,13 +54,14 @@ impl BuiltGait {
                 fits = Some(built.clone());
             }
         }
-        // The peak speed depends on the phases of the frames, so a slightly shorter period may also be within the
-        // rate.
+        // The peak speed depends on the phases at which frames are sent, so a slightly shorter period may also be
+        // within the rate.
         let shorter = build(fits.as_ref()?.gait().period() - 0.01);
         shorter.filter(|shorter| shorter.peak() <= rate).or(fits)
     }
 
-    /// Finds the largest amplitude at which a plain walk is within the robot's limits, deg.
+    /// Finds the largest amplitude at which a wave gait with the first parameters of the search is within the robot's
+    /// limits, deg.
     pub(crate) fn widest(robot: &Robot, goal: Goal, rate: f64) -> f64 {
         let walks = |widest: f64| {
             let start = &Kind::Wave.begin()[0];
@@ -95,7 +97,7 @@ impl BuiltGait {
     }
 }
 
-/// Rounds a period up to hundredths of a second, at least 0.2.
+/// Rounds a period up to hundredths of a second, at least 0.2 s.
 fn round_period(period: f64) -> f64 {
     // A rounding error must not raise the period to the next hundredth.
     ((period * 100.0 - 1e-6).ceil() / 100.0).max(0.2)
@@ -111,7 +113,7 @@ pub struct Judge {
 }
 
 impl Judge {
-    /// Draws `robots` random variations of this robot on this ground, from consecutive seeds.
+    /// Draws `robots` random variations of this robot on this ground, from consecutive seeds that begin with `seed`.
     pub fn new(robot: &Robot, ground: &Ground, goal: Goal, robots: usize, seed: u64) -> Self {
         let of = |n: u64| Variation::of(ground, seed.wrapping_add(n));
         Self {
@@ -134,17 +136,17 @@ impl Judge {
         self.goal.progress(&self.cycle_by_frames(gait)) / period
     }
 
-    /// The goal of the gaits.
+    /// The goal towards which gaits are scored.
     pub const fn goal(&self) -> Goal {
         self.goal
     }
 
-    /// Follows a cycle on the robot itself in fine steps, with ideal servos.
+    /// Simulates a cycle on the robot itself in fine steps, with ideal servos.
     pub fn cycle(&self, gait: &CheckedGait) -> Travel {
         gait.simulate_cycle(&self.ground).travel
     }
 
-    /// Follows a cycle on the robot itself frame by frame.
+    /// Simulates a cycle on the robot itself frame by frame, with the servos [`SERVOS`].
     fn cycle_by_frames(&self, gait: &CheckedGait) -> Travel {
         Variation::none(&self.ground).walked(&self.robot, gait, SERVOS)
     }
@@ -152,7 +154,8 @@ impl Judge {
     /// Computes the speed that 95 % of the robots exceed. `None` for a gait that does not move straight towards its
     /// goal on the robot itself.
     pub fn score(&self, gait: &CheckedGait) -> Option<f64> {
-        // Checked in fine steps, because a period may not be a whole number of frames.
+        // A simulation by frames would miss the end of a cycle whose period is not a whole number of frames, and so
+        // show a movement aside. So the direction is checked in fine steps.
         if !self.goal.is_true_to(&self.cycle(gait)) {
             return None;
         }
@@ -203,7 +206,7 @@ mod tests {
 
     #[test]
     fn a_gait_beyond_a_limit_is_not_built() {
-        // At 45 deg in both directions, the legs leave less than their margin.
+        // At 45 deg in both directions, the margins of the legs are smaller than their limit.
         let wide = plan(45.0, 1.0);
         assert!(BuiltGait::of(&paper(), &wide, 250.0).is_none());
     }

@@ -1,11 +1,11 @@
 //! The parameters of the search, numbers from 0 to 1, and the gaits that they describe.
 //!
 //! A straight gait is symmetrical in Hildebrand's sense (*Symmetrical gaits of horses*,
-//! Science 150, 1965): each leg moves as its mirror image did half a cycle earlier, so the
-//! body goes straight. In a turn on the spot the diagonally opposite leg takes the place of
-//! the mirror image, so the body stays where it is. The remaining parameters of a wave
-//! are its duty factor, the lag of the front foot behind the hind foot of one side, and two
-//! amplitudes.
+//! Science 150, 1965): each leg moves as the opposite leg of its pair did half a cycle earlier, so the
+//! body walks straight. In a turn on the spot the diagonally opposite leg takes the place of
+//! the leg of the other side, so the body stays where it is. The remaining parameters of a wave gait
+//! are its duty factor, the lag of the front foot behind the hind foot of one side, and an
+//! amplitude for each pair of legs.
 
 use lizard_robot::Bars;
 
@@ -14,9 +14,9 @@ use crate::goal::Goal;
 /// The kinds of gait that the search tries, and their parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// `waveform = "wave"`: duty factor, lag of the front feet, amplitude, balance of the two pairs.
+    /// `waveform = "wave"`. Parameters: duty factor, lag of the front feet, amplitude, balance of the two pairs.
     Wave,
-    /// `waveform = "held"`: order in which the feet swing, amplitude, balance of the two pairs.
+    /// `waveform = "held"`. Parameters: order in which the feet swing, amplitude, balance of the two pairs.
     Held,
 }
 
@@ -24,8 +24,8 @@ impl Kind {
     /// All kinds, in the order of the search.
     pub const ALL: [Self; 2] = [Self::Wave, Self::Held];
 
-    /// The starting points of the search: feet that swing one after the other, with the widest
-    /// stroke; for a wave in both sequences that animals use, lateral and diagonal.
+    /// Returns the parameters with which the search starts. The feet swing one after the other, with the largest
+    /// amplitude; a wave gait starts with both sequences that animals use, lateral and diagonal.
     pub fn begin(self) -> Vec<Vec<f64>> {
         let share = |duty: f64| (duty - DUTIES.0) / (DUTIES.1 - DUTIES.0);
         match self {
@@ -40,14 +40,14 @@ impl Kind {
 
 /// Smallest amplitude of the search, deg.
 const MIN_AMPLITUDE: f64 = 5.0;
-/// Range of duty factors: below one half, at most two feet are in stance, which is no majority.
+/// Range of duty factors. Below one half, at most two of the four feet are in stance, which is no majority.
 const DUTIES: (f64, f64) = (0.5, 0.95);
-/// Largest reduction of one pair's amplitude against the other's, as a share.
+/// Largest reduction of one pair's amplitude, as a share of the other pair's amplitude.
 const BALANCE: f64 = 0.5;
 /// The longest cycle that robot.toml accepts, s.
 pub const MAX_PERIOD_S: f64 = 60.0;
 
-/// The space of the search.
+/// The goal and the largest amplitude of the gaits that the search tries.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Space {
     /// The goal of the gait: straight or a turn, and its direction.
@@ -56,8 +56,8 @@ pub struct Space {
     pub widest: f64,
 }
 
-/// The gait for parameters from 0 to 1, rounded as in the file, with [`MAX_PERIOD_S`] as its
-/// period for now. Parameters are limited to their range; a missing one counts as 0.
+/// Returns the gait for parameters from 0 to 1, rounded as in robot.toml. Its period is [`MAX_PERIOD_S`], which the
+/// caller replaces. Parameters are limited to their range; a missing parameter counts as 0.
 pub fn planned(kind: Kind, space: Space, name: &str, parameters: &[f64]) -> Bars {
     let Space { goal, widest } = space;
     let at = |i: usize| {
@@ -71,12 +71,13 @@ pub fn planned(kind: Kind, space: Space, name: &str, parameters: &[f64]) -> Bars
     let (duty, start, amplitude) = match kind {
         Kind::Wave => {
             let lag = rounded(at(1), 2) % 1.0;
-            // Partners are half a cycle apart. Ahead, these are the two hind and the two front legs.
+            // The two legs of a pair are half a cycle apart. In a straight gait, the pairs are the hind legs and the
+            // front legs.
             let [lf, rf] = match goal {
                 Goal::Ahead(_) => [lag, (lag + 0.5) % 1.0],
                 Goal::Turn(_) => [(lag + 0.5) % 1.0, lag],
             };
-            // In a turn LH's partner is RF, and LF's partner is RH, which takes the value `rf`.
+            // In a turn, the pairs are LH and RF, and LF and RH; so RH takes the value `rf`.
             let starts = match goal {
                 Goal::Ahead(_) => [lf, rf, 0.5, 0.0],
                 Goal::Turn(_) => [lf, 0.5, rf, 0.0],
@@ -109,7 +110,7 @@ fn rounded(value: f64, digits: i32) -> f64 {
     (value * scale).round() / scale
 }
 
-/// Selects one of the 24 orders of four legs by `at`, 0 to 1: each leg's turn, 0 to 3, in servo order.
+/// Selects one of the 24 orders of four legs by `at`, 0 to 1. Returns each leg's turn, 0 to 3, in servo order.
 fn order_of_turns(at: f64) -> [usize; 4] {
     let mut left = vec![3, 0, 2, 1];
     let mut number = ((at * 24.0) as usize).min(23);

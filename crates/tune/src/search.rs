@@ -1,6 +1,6 @@
 //! Differential evolution (R. Storn, K. Price, *Journal of Global Optimization* 11, 1997), with steps towards one
-//! of the best members (J. Zhang, A. Sanderson, *IEEE Transactions on Evolutionary Computation* 13, 2009). It needs
-//! no gradient, copes with refused trials and is a page long.
+//! of the best members (J. Zhang, A. Sanderson, *IEEE Transactions on Evolutionary Computation* 13, 2009). The
+//! method needs no gradient, copes with refused trials, and its code is a page long.
 //!
 //! The search does not compute scores: its caller takes the trials of a round, scores them in any order, and
 //! returns the scores. Random numbers come from one seed in a fixed order, so the same seed finds the same gait on
@@ -10,12 +10,12 @@ use fastrand::Rng;
 
 /// Number of members of the population.
 const MEMBERS: usize = 20;
-/// Number of leaders. A trial moves towards one of several leaders, so that the search does not end at the first
-/// local maximum.
+/// Number of best members, the leaders. Each trial moves towards a leader drawn at random, so that the search does
+/// not end at the first local maximum.
 const LEADERS: usize = 5;
-/// Share of a member's parameters that a trial changes, on average.
+/// Probability with which a trial changes a parameter of its member.
 const CHANGED: f64 = 0.9;
-/// Bounds of the factor on the difference of two members; each trial draws it uniformly.
+/// Bounds of the factor on the steps of a trial; each trial draws the factor uniformly.
 const STEPS: (f64, f64) = (0.4, 0.9);
 
 /// Returns the number of trials of a [`Search`] with this number of rounds, including the first population, which
@@ -29,7 +29,7 @@ pub const fn trials(rounds: usize) -> usize {
 struct Member {
     /// Parameters, each 0 to 1.
     parameters: Vec<f64>,
-    /// Score; `None` if the member is refused.
+    /// Score; `None` if the parameters were refused.
     score: Option<f64>,
 }
 
@@ -42,7 +42,7 @@ pub struct Search {
 }
 
 impl Search {
-    /// Starts a search with these parameter sets, filled up with random ones.
+    /// Starts a search with these parameter sets, and as many random ones as complete the population.
     pub fn new(start: &[Vec<f64>], seed: u64) -> Self {
         let mut rng = Rng::with_seed(seed);
         let parameters = start.first().map_or(0, Vec::len);
@@ -60,7 +60,7 @@ impl Search {
         &self.trials
     }
 
-    /// Takes the scores of this round's trials, in their order, and makes the trials of the next
+    /// Takes the scores of this round's trials, in the order of [`Search::trials`], and makes the trials of the next
     /// round. A trial counts as refused if its score is `None` or missing.
     pub fn score(&mut self, scores: impl IntoIterator<Item = Option<f64>>) {
         let scores = scores.into_iter().chain(std::iter::repeat(None));
@@ -94,9 +94,9 @@ fn score_of(member: &Member) -> f64 {
     member.score.unwrap_or(f64::NEG_INFINITY)
 }
 
-/// Makes a trial from a member: a step towards one of the best members plus a step along the difference of two
-/// others, crossed with the member itself. A parameter that would leave the range 0 to 1 moves halfway to the bound
-/// instead.
+/// Makes a trial from the member number `of`: a step towards one of the best members plus a step along the difference
+/// of two other members, crossed with the member itself. A parameter that would leave the range 0 to 1 moves halfway
+/// to the bound instead.
 fn trial(members: &[Member], of: usize, rng: &mut Rng) -> Vec<f64> {
     let own = &members[of].parameters;
     let mut ranks: Vec<&Member> = members.iter().collect();
@@ -125,7 +125,8 @@ fn trial(members: &[Member], of: usize, rng: &mut Rng) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    /// A score with a narrow curved ridge and its top at (0.7, 0.49); trials with x + y up to 0.5 are refused.
+    /// Computes a score with a narrow curved ridge and its maximum at (0.7, 0.49); refuses parameters with x + y up
+    /// to 0.5.
     fn ridge(at: &[f64]) -> Option<f64> {
         let (x, y) = (at[0], at[1]);
         let error = 40.0 * (y - x * x).powi(2) + (x - 0.7).powi(2);

@@ -11,7 +11,8 @@ use crate::search::Search;
 
 /// Number of random robots on which the search scores a gait.
 const JUDGES: usize = 16;
-/// First seed of the comparison's robots, which the search has not used.
+/// Difference between the first seed of the comparison's robots and that of the search's robots, so that none is in
+/// both.
 const COMPARISON_SEED: u64 = 1 << 40;
 /// Smallest servo speed that is accepted, deg/s.
 const MIN_SERVO_SPEED: f64 = 10.0;
@@ -19,7 +20,7 @@ const MIN_SERVO_SPEED: f64 = 10.0;
 /// The error for a gait that cannot be tuned.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum TuningError {
-    /// The gait has no goal.
+    /// The gait neither walks straight nor turns on the spot.
     #[error(transparent)]
     Goal(#[from] GoalError),
     /// The requested servo speed is too low for walking, or higher than the robot's limits allow.
@@ -52,7 +53,7 @@ pub struct Tuning {
     robot: Robot,
     ground: Ground,
     gait: CheckedGait,
-    /// Name of the gaits that the search finds.
+    /// Name that the gaits get that the search finds.
     name: String,
     rate: f64,
     space: Space,
@@ -61,12 +62,12 @@ pub struct Tuning {
 }
 
 impl Tuning {
-    /// Prepares the search for a faster gait on this ground, with servos that turn at `rate` (deg/s) or, if `None`,
-    /// as fast as in the given gait. The gaits found get this name, which must be valid in a robot.toml. Takes as
-    /// long as a few trials, because it finds the widest stride that the robot's limits allow.
+    /// Prepares the search for a faster gait on this ground. The servos turn at most at `rate` (deg/s) or, if `None`,
+    /// as fast as in the given gait. The gaits found get the name `name`, which must be valid in a robot.toml. Takes
+    /// as long as a few trials, because it finds the largest amplitude that the robot's limits allow.
     ///
     /// # Errors
-    /// Fails for a gait that neither goes straight nor turns on the spot, or a rate out of range.
+    /// Fails for a gait that neither walks straight nor turns on the spot, or for a rate out of range.
     pub fn new(
         robot: &Robot,
         ground: &Ground,
@@ -90,29 +91,30 @@ impl Tuning {
         })
     }
 
-    /// The goal of the gait.
+    /// The goal of the given gait, which the search keeps.
     pub const fn goal(&self) -> Goal {
         self.space.goal
     }
 
-    /// Largest speed of a servo, deg/s.
+    /// Largest speed of a servo that the gaits may use, deg/s.
     pub const fn rate(&self) -> f64 {
         self.rate
     }
 
-    /// Starts the search for a kind of gait. The searches are independent of each other.
+    /// Starts the search for a kind of gait. The searches for different kinds are independent of each other.
     pub fn search(&self, kind: Kind) -> Search {
         Search::new(&kind.begin(), self.seed.wrapping_add(kind as u64))
     }
 
-    /// Scores a gait by the speed that 95 % of the random robots exceed, mm/s or deg/s. `None` if the robot's
-    /// limits forbid the gait, or if it moves in another direction. Takes a few hundredths to a few tenths of a
-    /// second.
+    /// Scores a gait by the speed that 95 % of the random robots exceed, mm/s or deg/s. `None` if the gait breaks a
+    /// limit of the robot, or if it does not move straight towards the goal. Takes a few hundredths to a few tenths
+    /// of a second.
     pub fn score(&self, kind: Kind, parameters: &[f64]) -> Option<f64> {
         self.judge.score(self.build(kind, parameters)?.gait())
     }
 
-    /// Builds the gait with the best score whose movement does not depend on ties.
+    /// Builds the gait with the best score among those whose movement does not depend on unmeasurable differences
+    /// between the pads. `None` if there is no such gait.
     pub fn best(&self, mut scored: Vec<ScoredParameters>) -> Option<BuiltGait> {
         scored.sort_by(|a, b| b.score.total_cmp(&a.score));
         scored
@@ -121,8 +123,7 @@ impl Tuning {
             .find(|built| built.gait().predict(&self.ground).is_decided())
     }
 
-    /// Compares the gait that was found with the given one, on this number of random robots that
-    /// the search has not used.
+    /// Compares the gait that was found with the given gait, on `robots` random robots that the search has not used.
     pub fn compare(&self, found: &BuiltGait, robots: usize) -> Comparison {
         let seed = self.seed.wrapping_add(COMPARISON_SEED);
         let judge = Judge::new(&self.robot, &self.ground, self.goal(), robots, seed);
@@ -135,7 +136,8 @@ impl Tuning {
     }
 }
 
-/// Returns the speed limit of the servos: the requested one or, without a request, the gait's own peak speed.
+/// Returns the speed limit of the servos, deg/s: the requested limit or, without a request, the gait's own peak
+/// speed.
 fn servo_speed(robot: &Robot, gait: &CheckedGait, asked: Option<f64>) -> Result<f64, TuningError> {
     let Some(rate) = asked else {
         return Ok(gait.audit().peak.speed);

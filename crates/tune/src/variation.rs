@@ -9,29 +9,29 @@ use lizard_twin::{FRAME, ServoModel};
 /// Number of phases in a cycle.
 const PHASES: f64 = 65536.0;
 
-/// Range of the random factor on robot.toml's friction. The constants below are also ranges of factors, or largest
-/// deviations in mm and deg.
+/// Range of the random factor on robot.toml's friction. The following constants are also ranges of factors if they
+/// have two values, and else largest deviations in mm or deg.
 pub const FRICTION: (f64, f64) = (0.5, 1.5);
 const PADS: (f64, f64) = (0.9, 1.1);
 const CENTRE: f64 = 8.0;
 const MOUNT: f64 = 4.0;
 const HIPS: f64 = 2.0;
 const SPRING: (f64, f64) = (0.8, 1.2);
-/// Range of the factor on the stiffness of the feet's leaves. It grows with the cube of their thickness, which a
-/// print keeps within a fifteenth.
+/// Range of the factor on the stiffness of the feet's leaves. Stiffness grows with the cube of a leaf's thickness,
+/// which a print keeps within a fifteenth.
 const LEAF: (f64, f64) = (0.8, 1.25);
-/// Largest random play that is added to that of the legs, deg.
+/// Largest random play that is added to the play of the legs, deg.
 const PLAY: f64 = 1.0;
 
-/// Description of the range of the random robots.
+/// Description of the ranges in which the random robots vary, for reports.
 pub const SPREAD: &str = "friction x 0.5 to 1.5, each pad's x 0.9 to 1.1, backward over forward x 0.9 to 1.1, mass centre +-8 mm,\n\
 mounting +-4 deg, hips +-2 mm, springs x 0.8 to 1.2, leaves of feet x 0.8 to 1.25, a foot longer by\n\
 -1 to 1 times what [feet] level says";
 
-/// Description of the play that [`Variation::with_play`] adds.
+/// Description of the play that [`Variation::with_play`] adds, for reports.
 pub const PLAY_SPREAD: &str = "play of the legs 0 to 1 deg more";
 
-/// A robot and a floor that differ randomly from those of robot.toml.
+/// A robot and a floor that differ randomly from the robot and the floor of robot.toml.
 #[derive(Debug, Clone, Copy)]
 pub struct Variation {
     ground: Ground,
@@ -91,7 +91,7 @@ impl Variation {
     /// Adds random play to the legs. Walking then takes longer to compute.
     #[must_use]
     pub fn with_play(mut self, seed: u64) -> Self {
-        // Play has its own random sequence, so that all other values stay the same.
+        // Play has its own random sequence, so that all other values are those of the robot without added play.
         let mut rng = Rng::with_seed(seed ^ 0x9E37_79B9_7F4A_7C15);
         self.ground.drive.play += PLAY * rng.f64();
         self
@@ -106,7 +106,8 @@ impl Variation {
         }
     }
 
-    /// Follows the second cycle of a gait frame by frame with these servos. All later cycles repeat the second.
+    /// Simulates two cycles of a gait frame by frame with these servos, and returns the movement in the second. All
+    /// later cycles repeat the second.
     pub fn walked(&self, robot: &Robot, gait: &CheckedGait, model: ServoModel) -> Travel {
         let mut sweeps = gait.sweeps(gait.phase(0.0));
         let targets = |phase: u16| gait.sweeps(f64::from(phase) / PHASES);
@@ -134,7 +135,7 @@ impl Variation {
         };
         let first: Vec<[f64; 4]> = gait.frames().map(|(_, phase)| next(phase)).collect();
         let [start, end] = [first.first(), first.last()].map(|at| at.copied().unwrap_or_default());
-        // With rigid legs the first cycle changes only the servos.
+        // Rigid legs keep nothing from the first cycle, so only the servos need to run through it.
         let sprung = self.ground.drive.lags();
         let from = if sprung { start } else { end };
         let mut walker = Walker::with_unevenness(self.ground, from, self.pads, self.ratio);
@@ -151,7 +152,7 @@ impl Variation {
     }
 }
 
-/// Returns the values below which these shares of all values lie, by nearest rank.
+/// Returns the values below which these shares of all values lie, by nearest rank; NaN if there are no values.
 pub fn quantiles<const N: usize>(mut values: Vec<f64>, shares: [f64; N]) -> [f64; N] {
     values.sort_by(f64::total_cmp);
     let last = values.len().saturating_sub(1);

@@ -1,8 +1,8 @@
 //! Simulated twin of the robot: the movement of body, legs and feet that a board's servo pulses cause.
 //!
-//! A frame's four pulses go to the servos (see [`ServoModel`]), the servos turn the linkage, struts or springs pull
-//! the legs along, and the contact model (`lizard_contact`) computes the movement of the body over the floor.
-//! [`Twin::push`] takes one frame and returns the result as a [`State`]. The crate reads, stores and prints
+//! The four pulses of a frame set the targets of the servos ([`ServoModel`]), the servos turn the linkage, struts or
+//! springs pull the legs along, and the contact model (`lizard_contact`) computes the movement of the body over the
+//! floor. [`Twin::push`] takes one frame and returns the result as a [`State`]. The crate reads, stores and prints
 //! nothing, so a program, a test and a web page can use it.
 //!
 //! # When not to use it
@@ -12,8 +12,8 @@
 //!
 //! # Units
 //! mm, degrees, seconds and microseconds, as their names say; a heading is in radians. Servo order A1, A2, A3, A4
-//! in every array, which is legs LF, RF, RH, LH. Points on the floor are (forward, left), seen from the robot's
-//! first place; points of a [`Shape`] are in the chassis frame of `lizard_kinematics`: x to the robot's right, y
+//! in every array, which is legs LF, RF, RH, LH. Points on the floor are (forward, left) relative to the robot's
+//! initial place; points of a [`Shape`] are in the chassis frame of `lizard_kinematics`: x to the robot's right, y
 //! forward.
 
 mod servo;

@@ -14,8 +14,8 @@ use crate::FRAME;
 pub enum ServoModel {
     /// Servos that follow their pulses at once and exactly.
     Ideal,
-    /// Servos with a largest rate and a dead band, whatever their load. A search uses them
-    /// because they take a fraction of the computing time.
+    /// Servos with a largest rate and a dead band, both independent of their load. A search uses these servos
+    /// because they take a fraction of the computing time of [`ServoModel::Motors`].
     Unloaded(Unloaded),
     /// Servos with motors of limited torque and rate, with a rotor, loaded by the pads' friction.
     Motors(Motors),
@@ -44,8 +44,8 @@ impl ServoModel {
 }
 
 impl Unloaded {
-    /// Computes the sweep one frame after it was `from`, with a pulse for `target`, all in deg;
-    /// `us_per_degree` is the servo's gain.
+    /// Computes the sweep at the end of a frame that begins at the sweep `from` with a pulse for the sweep `target`,
+    /// all in deg; `us_per_degree` is the servo's gain.
     pub fn sweep_after_frame(&self, from: f64, target: f64, us_per_degree: f64) -> f64 {
         let idle = self.dead_band / 2.0 / us_per_degree.abs();
         let max = self.rate * FRAME;

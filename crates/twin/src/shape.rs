@@ -9,25 +9,25 @@ use lizard_robot::{LegPlace, Robot};
 pub struct Shape {
     /// Shafts of the servos.
     pub shafts: [Vector; 4],
-    /// Tips of the cranks that carry head and tail.
+    /// Tips of the cranks of the head and tail five-bars.
     pub tips: [Vector; 4],
     /// Tips of the arms that carry the sliders.
     pub arms: [Vector; 4],
-    /// End points of head and tail, where their two links meet.
+    /// End points of head and tail, the joints between their two couplers.
     pub ends: [Vector; 2],
     /// The legs, which may lag behind their servos.
     pub legs: [LegPlace; 4],
 }
 
 impl Shape {
-    /// Computes the joints at servo angles (deg, chassis frame), with legs at these sweeps from
-    /// neutral (deg, foot forward positive), all in servo order; `None` if a loop does not close.
+    /// Computes the joints at servo angles (deg, chassis frame), with legs at these sweeps from neutral (deg, foot
+    /// forward positive), all in servo order; `None` if the loop of a five-bar or slider does not close.
     pub fn of(robot: &Robot, angles: [f64; 4], legs: [f64; 4]) -> Option<Self> {
         let solved = robot.lizard().solve(&angles.into()).ok()?;
         Some(Self::at_solution(robot, &solved, legs))
     }
 
-    /// Computes the joints of a solved pose.
+    /// Computes the joints of a solved pose, with legs at these sweeps from neutral (deg, foot forward positive).
     pub fn at_solution(robot: &Robot, solved: &Solution, legs: [f64; 4]) -> Self {
         let shafts = robot.lizard().shafts();
         let tips = solved.crank_tips();

@@ -6,9 +6,9 @@ use lizard_kinematics::{Check, Margins};
 /// The state of the robot after a frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State {
-    /// Number of frames so far, including this one: the first is 1.
+    /// Number of the frame, counted from 1.
     pub frame: u64,
-    /// True for each servo that had a pulse.
+    /// True for each servo that had a pulse in this frame.
     pub pulsed: [bool; 4],
     /// Position and heading of the body on the floor.
     pub place: Place,
@@ -26,14 +26,15 @@ pub struct State {
     pub slip: [f64; 4],
     /// Load of each foot, N.
     pub loads: [f64; 4],
-    /// Margins of the pose; `None` if a loop does not close.
+    /// Margins of the pose; `None` if the loop of a five-bar or slider does not close.
     pub margins: Option<Margins>,
-    /// Slider travel from nominal, left and right, mm; `None` if a loop does not close.
+    /// Left and right slider travel from nominal, mm; `None` if the loop of a five-bar or slider does not close.
     pub strokes: Option<[f64; 2]>,
 }
 
 impl State {
-    /// The smallest margin: its name and its value.
+    /// Returns the name and the value of the smallest margin; `None` if the loop of a five-bar or slider does not
+    /// close.
     pub fn least_margin(&self) -> Option<(Check, f64)> {
         self.margins.map(|margins| margins.min())
     }

@@ -17,15 +17,15 @@ pub struct Tally {
     pub length: f64,
     /// Distance that each foot slid over the floor, mm.
     pub slip: [f64; 4],
-    /// Largest lag of a leg behind its servo, deg.
+    /// Largest absolute lag of a leg behind its servo, deg.
     pub lag: f64,
-    /// Name and value of the smallest margin.
+    /// Name and value of the smallest margin; `None` before the first frame whose loops close.
     pub margin: Option<(Check, f64)>,
-    /// Smallest and greatest slider travel, mm; `None` before the first frame.
+    /// Smallest and greatest slider travel, mm; `None` before the first frame whose loops close.
     pub stroke: Option<[f64; 2]>,
     /// Highest speed of a servo, deg/s.
     pub rate: f64,
-    /// Largest error of a servo against its pulse, deg.
+    /// Largest difference between a servo's angle and that of its pulse, deg.
     pub error: f64,
 }
 

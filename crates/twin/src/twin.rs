@@ -1,4 +1,4 @@
-//! Simulation of the robot on a floor, moved frame by frame by its servo pulses.
+//! Simulation of a robot that its servo pulses move over a floor, frame by frame.
 
 use lizard_contact::{FORWARD, Ground, Place, Walker};
 use lizard_kinematics::wrap;
@@ -10,7 +10,7 @@ use crate::shape::Shape;
 use crate::state::State;
 use crate::tally::Tally;
 
-/// A robot on a floor, with its servos and legs.
+/// A simulated robot on a floor, with the state of its servos and legs.
 #[derive(Debug, Clone)]
 pub struct Twin {
     robot: Robot,
@@ -22,7 +22,7 @@ pub struct Twin {
 }
 
 impl Twin {
-    /// Returns a robot that stands at neutral without pulses, its springs relaxed.
+    /// Returns a robot that stands at neutral without pulses, with legs that do not lag.
     pub fn new(robot: &Robot, model: ServoModel) -> Self {
         Self {
             robot: robot.clone(),
@@ -33,8 +33,8 @@ impl Twin {
         }
     }
 
-    /// Simulates a frame of 20 ms with the width of each servo's pulse in us, `None` without a pulse. A servo
-    /// without a pulse does not turn, because its gears hold it.
+    /// Simulates a frame of 20 ms with pulses of these widths in us; `None` for a servo without a pulse, which does
+    /// not turn because its gears hold it.
     pub fn push(&mut self, pulses: [Option<f64>; 4]) -> State {
         let servos = self.robot.servos();
         let targets = std::array::from_fn(|i| pulses[i].map(|width| servos[i].sweep(width)));
@@ -49,7 +49,7 @@ impl Twin {
     }
 
     /// Simulates a frame in which the servos turn towards these sweeps from neutral, deg, counter-clockwise
-    /// positive.
+    /// positive; `None` for a servo without a pulse.
     fn turn(&mut self, targets: [Option<f64>; 4]) -> State {
         let before = self.sweeps;
         let servos = self.robot.servos();
@@ -109,7 +109,7 @@ impl Twin {
         &self.robot
     }
 
-    /// The present positions of the joints, chassis frame; `None` if a loop does not close.
+    /// The present positions of the joints, chassis frame; `None` if the loop of a five-bar or slider does not close.
     pub fn shape(&self) -> Option<Shape> {
         Shape::of(&self.robot, self.angles(), self.legs())
     }
@@ -119,7 +119,7 @@ impl Twin {
         std::array::from_fn(|i| self.robot.servos()[i].neutral + self.sweeps[i])
     }
 
-    /// The present sweeps of the legs, which may lag: deg, foot forward positive.
+    /// The present sweeps of the legs, deg, foot forward positive. A leg may lag behind its servo.
     pub fn legs(&self) -> [f64; 4] {
         self.walker.legs()
     }
@@ -129,13 +129,13 @@ impl Twin {
         self.walker.ground()
     }
 
-    /// Changes floor, pads or drive from the next frame on.
+    /// Changes the floor, the pads and the drive of the legs from the next frame on.
     pub fn set_ground(&mut self, ground: Ground) {
         self.walker.set_ground(ground);
     }
 
     /// Simulates two cycles of a gait at full speed from neutral, with the present ground and servos, and returns
-    /// the tally of the second. This twin itself does not move.
+    /// the tally of the second cycle. This twin itself does not move.
     pub fn cycle(&self, gait: &CheckedGait) -> Tally {
         let mut twin = Self::new(&self.robot, self.model);
         twin.set_ground(*self.ground());
@@ -164,7 +164,7 @@ impl Twin {
         self.walker.set_place(place);
     }
 
-    /// The sweeps that the legs would have without lag: deg, foot forward positive.
+    /// The sweeps that the legs would have without lag, deg, foot forward positive.
     fn leg_sweeps(&self) -> [f64; 4] {
         std::array::from_fn(|i| FORWARD[i] * self.sweeps[i])
     }

@@ -1,4 +1,4 @@
-//! Tests of the twin: frames pushed one by one move the robot as predicted for the gait.
+//! Tests of the twin: the frames of a gait, simulated one by one, move the robot as predicted for the gait.
 
 use lizard_robot::{CheckedGait, Drive, Ground, Kind, Place, Robot};
 use lizard_twin::{ServoModel, Tally, Twin, Unloaded};
@@ -7,13 +7,13 @@ fn paper() -> Robot {
     Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is right")
 }
 
-/// Returns the pulse widths of a gait's frame by the firmware's table, us.
+/// Returns the pulse widths of a gait at a phase, from the firmware's table, us.
 fn widths(robot: &Robot, gait: &CheckedGait, phase: u16) -> [Option<f64>; 4] {
     let angles = gait.table_angles(phase);
     std::array::from_fn(|i| Some(robot.servos()[i].pulse(angles[i])))
 }
 
-/// Simulates four cycles of a gait and returns the tally of the last.
+/// Simulates four cycles of a gait and returns the tally of the last cycle.
 fn cycle(robot: &Robot, name: &str, model: ServoModel, ground: &Ground) -> Tally {
     let gait = robot.gait(name).expect(name);
     let mut twin = Twin::new(robot, model);

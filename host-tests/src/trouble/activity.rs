@@ -1,4 +1,4 @@
-//! Activities of the robot during which trouble begins.
+//! The activities of the robot during which a scenario's trouble begins.
 
 use std::fmt;
 
@@ -42,7 +42,7 @@ impl Activity {
         Self::Driving,
     ];
 
-    /// Returns the activity of the scenario with this number: four of thirteen are drives.
+    /// Returns the activity of the scenario with this number. Four of thirteen scenarios are drives.
     #[must_use]
     pub fn of(number: u64) -> Self {
         let index = (number % 13) as usize;

@@ -1,4 +1,4 @@
-//! Campaign of many scenarios on all cores, and its results.
+//! A campaign: many scenarios, played and judged on several threads, and the summary of their results.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -15,7 +15,7 @@ use super::judge::broken_rules;
 use super::scenario::Scenario;
 use super::stage::play;
 
-/// A scenario that broke a rule.
+/// A scenario in which the firmware broke a rule.
 #[derive(Debug, Clone)]
 pub struct Failure {
     /// The scenario.
@@ -34,12 +34,12 @@ impl fmt::Display for Failure {
     }
 }
 
-/// The results of many scenarios.
+/// The results of a campaign.
 #[derive(Debug, Default)]
 pub struct Summary {
-    /// The number of scenarios played and the number failed, by activity.
+    /// For each activity, the number of scenarios played and the number of those that failed.
     pub activities: BTreeMap<Activity, (u64, u64)>,
-    /// Failed scenarios, in order of number.
+    /// The scenarios that failed, in the order of their numbers.
     pub failures: Vec<Failure>,
     /// The number of simulated cycles.
     pub cycles: u64,
@@ -78,8 +78,8 @@ pub fn judge(image: &Image, robot: &Robot, scenario: &Scenario) -> (u64, Option<
     (record.end, failure)
 }
 
-/// Plays the scenarios `0..count` of a seed on `threads` threads. `progress` gets the number of scenarios done, and
-/// the failure of the last one.
+/// Plays and judges the scenarios `0..count` of a seed on `threads` threads. Calls `progress` after each scenario
+/// with the number of scenarios done, and the scenario's failure if it failed.
 pub fn campaign(
     image: &Image,
     robot: &Robot,

@@ -13,23 +13,23 @@ use simulated_uno::{Air, Radio, Uno, Wire};
 use super::record::{MS, Record, Span};
 use super::setup;
 
-/// On average one byte in this many loses its stop bit on the wire.
+/// Average number of bytes on the wire of which one loses its stop bit.
 const SPOILT: u16 = 300;
 
-/// Indices of the senders on the wire to the board.
+/// Index of the radio module among the senders on the wire to the board; `CABLE` is that of the cable.
 const RADIO: usize = 0;
 const CABLE: usize = 1;
 
-/// A person with a phone, the radio link, its module, and the wire that module and cable share.
+/// A person with a phone, the radio link, the radio module, and the wire that the module and the cable share.
 pub struct Drive<'a> {
     robot: &'a Robot,
     radio: Radio,
     wire: Wire,
     session: Session,
-    /// The time of cycle 0.
+    /// The instant that corresponds to the chip's cycle 0.
     start: Instant,
     random: Rng,
-    /// Text that the phone has received since its last complete line.
+    /// Text that the phone has received after the last complete line.
     text: String,
     /// The cycle until which the phone's screen is locked.
     locked: u64,
@@ -53,25 +53,25 @@ impl<'a> Drive<'a> {
         }
     }
 
-    /// Ends the drive: the phone leaves, and the module stays on the wire.
+    /// Ends the drive at the cycle `now`: the phone moves out of range, and the module stays on the wire.
     pub fn leave(&mut self, now: u64) {
         self.has_left = true;
         self.radio.leave(now);
     }
 
-    /// Sends bytes by the cable.
+    /// Sends bytes by the cable, beginning at the cycle `now`.
     pub fn send_by_cable(&mut self, bytes: &[u8], now: u64) {
         self.wire.write(CABLE, bytes, now);
     }
 
-    /// Passes on all bytes, including those that the board has just sent. Call it every
-    /// millisecond.
+    /// Passes bytes on between board, cable, radio and phone; `sent` are the bytes that the board has sent since the
+    /// last call. Must be called every millisecond.
     pub fn pass(&mut self, sent: &[u8], uno: &mut Uno, record: &mut Record) {
         let (now, chip_baud) = (uno.cycle(), uno.chip_baud());
         let received = self.radio.received_bytes(sent, chip_baud);
         let [to_uno, to_phone] = self.radio.pass(&received, now);
         self.wire.write(RADIO, &to_uno, now);
-        // The wire samples the bytes at the chip's rate, so they are sent on at this rate.
+        // The wire samples the bytes at the chip's baud rate, so they are passed on at this rate.
         uno.set_baud(chip_baud);
         for received in self.wire.receive(now, chip_baud) {
             let is_spoilt = !self.has_left && self.random.u16(..SPOILT) == 0;
@@ -96,7 +96,7 @@ impl<'a> Drive<'a> {
         }
     }
 
-    /// Lets the phone read its lines, and the person act at random.
+    /// Lets the phone read the lines that it has received, and the person act at random.
     fn talk(&mut self, now: u64, record: &mut Record) {
         while let Some((line, rest)) = self.text.split_once('\n') {
             self.session.receive(line.trim_end_matches('\r'));
@@ -123,7 +123,7 @@ impl<'a> Drive<'a> {
         }
     }
 
-    /// A random line that the person sends.
+    /// Returns a random line for the person to send.
     fn line(&mut self) -> String {
         let gaits = tour::moving(self.robot);
         let gait = self.random.choice(&gaits).unwrap_or(&"stand");

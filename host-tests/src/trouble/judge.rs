@@ -1,5 +1,5 @@
-//! Judge of a scenario: converts its record to events for the observer, and checks the rules that need the whole
-//! record.
+//! Judge of a scenario: converts the record to events for the observer of the rules, and checks those rules itself
+//! that need the whole record.
 
 use lizard_core::console::word::Effect;
 use lizard_core::memory::restart::Cause;
@@ -16,7 +16,7 @@ use super::setup::WIDE_SCALE;
 /// The pin of the LED.
 const LED: Pin = Pin::d(13);
 
-/// Cycles of a byte on the serial line.
+/// Cycles of a byte that the board sends on the serial line.
 const BYTE: u64 = 1_360;
 
 /// Returns the limits for a scenario's robot.
@@ -28,12 +28,12 @@ fn limits(robot: &Robot, scenario: &Scenario) -> Limits {
         let mut steps = scenario.steps.iter();
         steps.any(|step| step.to_string().contains(text))
     };
-    // If the scenario changes a servo's scale, the larger of both scales counts.
+    // If the scenario changes a servo's scale, the limit is that of the larger scale.
     let wide = if mentions("scale ") { WIDE_SCALE } else { "0" };
     let wide: f64 = wide.parse().expect("a number");
     let servos = robot.servos().each_ref();
     Limits {
-        // A cycle of rounding at each end, and half a step of an angle.
+        // Allows a cycle of rounding at the start and at the end of a pulse, and half an angle step.
         leap: servos.map(|servo| cycles(fastest / 50.0 * servo.us_per_degree.abs().max(wide)) + 4),
         widths: servos.map(|servo| (cycles(servo.min_us) - 1, cycles(servo.max_us) + 1)),
         levels: robot.supplies().board.map(|volts| (1_000.0 * volts) as u32),
@@ -154,7 +154,7 @@ pub fn events(record: &Record) -> Vec<(Time, Event<'_>)> {
     for write in &record.written {
         events.push((time(write.cycle), Event::Written));
     }
-    // Some rules end at a time at which nothing else is observed.
+    // The time limits of some rules end at a time at which nothing else is observed.
     let often = (0..record.end).step_by(100 * MS as usize);
     events.extend(often.map(|at| (time(at), Event::Pass)));
     events.push((time(record.end), Event::Pass));
@@ -170,7 +170,8 @@ fn check_alive(record: &Record) -> Result<(), String> {
     }
 }
 
-/// Checks that the last `stand` of the scenario, long after all trouble, is carried out.
+/// Checks that the last `stand` of the scenario, long after all trouble, is carried out and that the servos then get
+/// constant pulses.
 fn check_stand(record: &Record) -> Result<(), String> {
     let mut exchanges = record.exchanges.iter().rev();
     let status = exchanges.next().ok_or("nothing was asked")?;
@@ -196,8 +197,8 @@ fn check_stand(record: &Record) -> Result<(), String> {
     Ok(())
 }
 
-/// Checks that `status` is the same before and after a refused command, unless `deadman` or the end of a counted
-/// motion stopped the robot meanwhile.
+/// Checks that `status` is the same before and after a refused command, unless the robot stopped by `deadman` or at
+/// the end of a counted motion, performs a routine, or was reset or disturbed between the two.
 fn check_refusals(record: &Record) -> Result<(), String> {
     for three in record.exchanges.windows(3) {
         let [before, refused, after] = three else {
@@ -231,7 +232,7 @@ fn check_refusals(record: &Record) -> Result<(), String> {
     Ok(())
 }
 
-/// Checks the time between each pulse and the previous one, unless a reset or blocked interrupts came between them.
+/// Checks that each servo's pulses are exactly a frame apart, unless a reset or blocked interrupts came between them.
 fn check_pulse_times(record: &Record) -> Result<(), String> {
     const FRAME: u64 = 20 * MS;
     for servo in 0..4 {
@@ -242,7 +243,7 @@ fn check_pulse_times(record: &Record) -> Result<(), String> {
         let begins: Vec<u64> = pulses.map(|(at, _)| *at).collect();
         for pair in begins.windows(2) {
             let (from, to) = (pair[0], pair[1]);
-            // Another rule judges missing frames.
+            // A longer distance is a missing frame, which another rule judges.
             let is_next = to - from < FRAME + FRAME / 2;
             let is_held = record.holds.iter().any(|hold| hold.overlaps(from, to));
             let is_new = record
@@ -271,8 +272,8 @@ fn check_orders_were_sent(record: &Record) -> Result<(), String> {
         } else {
             done
         };
-        // If a reset comes within a line, the program sees only the end of the line. If the radio link breaks
-        // within a line, noise may end it early.
+        // If a reset comes while a line arrives, the program receives only the last part of the line. If the radio
+        // link breaks within a line, noise may end the line early.
         let recent = line.cycle.saturating_sub(200 * MS)..line.cycle;
         let mut starts = record.starts.iter();
         let is_new = starts.any(|start| recent.contains(&start.cycle));
@@ -294,12 +295,13 @@ fn check_orders_were_sent(record: &Record) -> Result<(), String> {
     Ok(())
 }
 
-/// Checks that each `stop` of the person at the phone is answered, once the radio link has held for a while.
+/// Checks that each `stop` of the person at the phone is answered in time, if the radio link holds for that long and
+/// no trouble comes.
 fn check_stop_is_answered(record: &Record) -> Result<(), String> {
     const ANSWER_TIME: u64 = 2_000 * MS;
-    // Longer before the robot has found the line's baud rate, for which it needs up to five lines.
+    // The time for an answer while the robot still searches for the line's baud rate, which takes up to five lines.
     const RATE_SEARCH_TIME: u64 = 3_500 * MS;
-    // During this time before a `stop`, the answer to an earlier one may come.
+    // An answer to an earlier `stop` may come up to this time before the `stop`.
     const EARLIER_ANSWER_TIME: u64 = 300 * MS;
     for stop in &record.stops {
         let ends = |line: &&Line| {
@@ -326,7 +328,8 @@ fn check_stop_is_answered(record: &Record) -> Result<(), String> {
     Ok(())
 }
 
-/// Checks the LED between the last change (the report of a fault, an order or a start) and each `status`.
+/// Checks that the LED blinks the code of the fault that each `status` reports, from the last change (the report of a
+/// fault, an order or a start) on.
 fn check_led(record: &Record) -> Result<(), String> {
     let led = record.edges.iter().filter(|edge| edge.pin == LED);
     let led: Vec<(Time, bool)> = led.map(|edge| (edge.cycle as Time, edge.high)).collect();
@@ -334,7 +337,7 @@ fn check_led(record: &Record) -> Result<(), String> {
         let at = exchange.answer.as_ref()?.cycle;
         Some((at, led::code(exchange.status("fault")?)))
     };
-    // An order waits while older answers are printed, so the time of its own answer is what counts.
+    // An order waits while older answers are printed, so the change is at the time of its own answer.
     let tells = |text: &str| {
         let is_done = text.starts_with("ok ") && !text.starts_with("ok gait=");
         is_done || text.starts_with("# fault") || text.starts_with("# held")
@@ -346,7 +349,7 @@ fn check_led(record: &Record) -> Result<(), String> {
         .chain(record.starts.iter().map(|start| start.cycle))
         .collect();
     for (at, code) in record.exchanges.iter().filter_map(shown_code) {
-        // A flash that began before the last change does not belong to this pattern.
+        // A flash of the LED that began before the last change does not belong to the present pattern.
         let since = changes.iter().filter(|change| **change < at).max();
         let from = since.unwrap_or(&0) + 60 * MS;
         if !record.is_disturbed(from.saturating_sub(100 * MS), at) {

@@ -35,7 +35,7 @@ pub struct Exchange {
     pub line: String,
     /// The effect on the servos if the line is carried out.
     pub effect: Effect,
-    /// The answer: the first line after it that is not information, if there is one.
+    /// The answer: the first later line from the board that is an answer; `None` if the board did not answer in time.
     pub answer: Option<Line>,
 }
 
@@ -47,7 +47,8 @@ impl Exchange {
         answer.is_some_and(|line| line.text.starts_with("ok"))
     }
 
-    /// Returns a value of `status`, if this exchange was an answered `status`.
+    /// Returns the value of this key in the answer to `status`; `None` if this exchange was no answered `status`, or
+    /// if the answer lacks the key.
     #[must_use]
     pub fn status(&self, key: &str) -> Option<&str> {
         let text = self.answer.as_ref()?.text.strip_prefix("ok ")?;
@@ -60,7 +61,7 @@ impl Exchange {
 /// A line that arrived at the board.
 #[derive(Debug, Clone)]
 pub struct Received {
-    /// The cycle at which the end of the line had arrived.
+    /// The cycle at which the line end had arrived.
     pub cycle: u64,
     /// The line.
     pub text: String,
@@ -95,9 +96,10 @@ pub struct Record {
     pub sent: Vec<(u64, String)>,
     /// The cycles at which the person at the phone stopped the robot.
     pub stops: Vec<u64>,
-    /// The spans in which the lines of the person at the phone could reach the board.
+    /// The spans in which the radio link existed and the phone's screen was not locked, so that the person's lines
+    /// could reach the board.
     pub radio_spans: Vec<Span>,
-    /// The cycles at which bytes arrived.
+    /// The cycles at which bytes arrived at the board.
     pub bytes: Vec<u64>,
     /// Every start of the program.
     pub starts: Vec<Reset>,
@@ -113,14 +115,14 @@ pub struct Record {
     pub cuts: Vec<u64>,
     /// The cycle at which the scenario ended.
     pub end: u64,
-    /// The board's state at the end.
+    /// The board's state at the end; `None` until the scenario has ended.
     pub state: Option<State>,
 }
 
 impl Record {
     /// Finds the servos' pulses among the edges and adds them to the record.
     pub(super) fn find_pulses(&mut self, pins: [Pin; 4]) {
-        // Within this time after a reset, the pins are released.
+        // The time after a reset within which the chip releases its pins.
         const AT_ONCE: u64 = MS / 10;
         for (servo, pin) in pins.into_iter().enumerate() {
             for pulse in pulses(&self.edges, pin) {
@@ -146,8 +148,8 @@ impl Record {
         all.any(|span| span.overlaps(start, end))
     }
 
-    /// Returns the lines that tell the robot to move, to stop or to rest, each with its outcome: `Some(true)` done,
-    /// `Some(false)` refused, `None` unknown.
+    /// Returns the lines that tell the robot to move, to stop or to rest, each with its outcome: `Some(true)` if the
+    /// board carried out the line, `Some(false)` if it refused the line, `None` if the outcome is unknown.
     pub fn orders(&self) -> impl Iterator<Item = (&Received, Option<bool>)> {
         self.received
             .iter()
@@ -157,7 +159,7 @@ impl Record {
                     exchange.line == received.text && exchange.asked <= received.cycle
                 };
                 let exchange = self.exchanges.iter().rev().find(asked);
-                // The line must have arrived within the time that sending it takes.
+                // The exchange belongs to this line only if the line arrived within the time that sending it takes.
                 let exchange = exchange.filter(|one| received.cycle - one.asked < 10 * MS);
                 let answer = exchange.and_then(|exchange| exchange.answer.as_ref());
                 let done = answer.and_then(|answer| match answer.text.get(..3)? {
@@ -169,7 +171,9 @@ impl Record {
             })
     }
 
-    /// Derives the outcome of a line from the board's next lines, if nobody waited for its answer.
+    /// Derives the outcome of a line from the lines that the board prints in the next 300 ms, for a line whose answer
+    /// was not waited for. Returns `Some(true)` if the board carried out the line, `Some(false)` if it refused the
+    /// line, `None` if the outcome is unknown.
     fn is_confirmed(&self, received: &Received) -> Option<bool> {
         let (from, to) = (received.cycle, received.cycle + 300 * MS);
         // A reset may have cut off the beginning of the line.
@@ -201,8 +205,8 @@ impl Record {
         self.exchanges.iter().any(is_matching)
     }
 
-    /// True if the board has answered since the person began to drive by radio, and since the last reset that made
-    /// it forget the line's baud rate.
+    /// True if, by the cycle `at`, the board has answered after the person began to drive by radio and after the last
+    /// reset at which the board forgot the line's baud rate.
     #[must_use]
     pub fn has_found_rate(&self, at: u64) -> bool {
         let radio = self.radio_spans.first().map_or(at, |link| link.start);

@@ -1,5 +1,5 @@
-//! Random scenarios: an activity, trouble that begins at a random cycle of it, and then commands
-//! that check the robot.
+//! Random scenarios: an activity, trouble that begins at a random cycle of the activity, and then
+//! commands that check the robot.
 
 mod troubles;
 
@@ -30,7 +30,7 @@ pub struct Scenario {
     pub number: u64,
     /// The robot's activity when trouble begins.
     pub activity: Activity,
-    /// True if a boot loader clears the chip's record of a reset's cause.
+    /// True if a boot loader clears MCUSR, the chip's record of a reset's cause.
     pub has_boot_loader: bool,
     /// The steps from power-on, in order.
     pub steps: Vec<Step>,
@@ -52,7 +52,7 @@ impl fmt::Display for Scenario {
 }
 
 impl Scenario {
-    /// Makes the scenario with this number of a seed.
+    /// Makes the scenario with this number among those of a seed.
     #[must_use]
     pub fn of(seed: u64, number: u64, robot: &Robot) -> Self {
         let mut rng = Rng::with_seed(seed.wrapping_mul(1_000_003).wrapping_add(number));
@@ -78,7 +78,8 @@ struct Script<'a> {
     rng: &'a mut Rng,
     robot: &'a Robot,
     steps: Vec<Step>,
-    /// True while a person drives by radio, so that an answer may not be for the cable.
+    /// True while a person drives by radio. Then lines are sent without waiting for an answer, since an answer may be
+    /// that to a line sent by radio.
     is_driven: bool,
 }
 
@@ -125,7 +126,7 @@ impl<'a> Script<'a> {
         name.map_or("stand".into(), |name| name.replace('-', " "))
     }
 
-    /// Starts an activity and waits until a random cycle of it.
+    /// Starts an activity and waits until a random cycle during the activity.
     fn activity(&mut self, activity: Activity) {
         let at_power_on = activity == Activity::Starting && self.rng.u8(0..3) == 0;
         if !at_power_on {
@@ -247,7 +248,7 @@ impl<'a> Script<'a> {
         self.wait_up_to(120);
     }
 
-    /// Starts the routine, and often presses the button that it waits for, then other inputs.
+    /// Starts the routine, often presses the button for which the routine waits, and then presses random inputs.
     fn start_patrol(&mut self) {
         self.say(PATROL);
         if self.rng.u8(0..4) > 0 {
@@ -266,7 +267,7 @@ impl<'a> Script<'a> {
         self.wait_up_to(2_000);
     }
 
-    /// Presses an input for a random time: perhaps too short to count, perhaps to the end.
+    /// Presses an input for a random time, which may be too short to count, or until the end of the scenario.
     fn press(&mut self) {
         let inputs: Vec<(&str, u8)> = self.robot.inputs().each().collect();
         let Some((_, pin)) = self.rng.choice(&inputs).copied() else {
@@ -279,7 +280,7 @@ impl<'a> Script<'a> {
         }
     }
 
-    /// Lets a person drive by radio, perhaps after noise like that of a module without a phone.
+    /// Lets a person drive by radio, in one of four cases after noise like that of a radio module without a phone.
     fn start_drive(&mut self) {
         if self.rng.u8(0..4) == 0 {
             self.add_noise();
@@ -328,7 +329,7 @@ impl<'a> Script<'a> {
         }
     }
 
-    /// Adds noise on the serial line, until a computer opens the port, which resets the board.
+    /// Adds noise on the serial line for a random time, and then a reset, as when a computer opens the port.
     fn add_noise(&mut self) {
         let cycles = self.rng.u64(MS..3_000 * MS);
         self.steps.push(Step::Noise(cycles));
@@ -338,9 +339,9 @@ impl<'a> Script<'a> {
     }
 
     /// Waits, asks for the status, then sends a line that is refused, `walk`, `rest` and `stand`,
-    /// and asks again after each.
+    /// and asks for the status after each of them.
     fn add_aftermath(&mut self) {
-        // In one case of four, long enough for the LED's fault pattern and for `boot`.
+        // In one case of four, waits long enough for the LED's fault pattern and for the gait that `boot` sets.
         let linger = if self.rng.u8(0..4) == 0 {
             5_500
         } else {

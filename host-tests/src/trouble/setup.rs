@@ -1,5 +1,5 @@
-//! Settings that a scenario makes before trouble begins, saved or not: servo numbers, a boot gait, a deadman, a
-//! travel.
+//! Settings that a scenario makes before trouble begins, saved or unsaved: the trims, scales and directions of
+//! servos, the gait after power-on, the `deadman` time, a servo's travel.
 
 use fastrand::Rng;
 use lizard_host::patrol::PATROL;
@@ -10,7 +10,7 @@ use super::step::Step;
 
 const MS: u64 = CYCLES_PER_MS;
 
-/// Returns the command for a random pose around the neutral one.
+/// Returns the command for a random pose within 9 degrees of the neutral pose.
 pub fn pose(rng: &mut Rng, robot: &Robot) -> String {
     let servos = robot.servos();
     let angles: Vec<String> = (0..4)
@@ -58,7 +58,7 @@ pub fn adjustment(rng: &mut Rng) -> String {
     }
 }
 
-/// Returns the steps that make settings of a random kind; in about half of the cases none.
+/// Returns the steps that make settings of a random kind; in about half of the cases no steps.
 pub fn settings(rng: &mut Rng, robot: &Robot) -> Vec<Step> {
     let wait = |ms: u64| Step::Wait(ms * MS);
     match rng.u8(0..16) {
@@ -73,10 +73,10 @@ pub fn settings(rng: &mut Rng, robot: &Robot) -> Vec<Step> {
         }
         5 => vec![say("boot rest"), say("save")],
         6 => vec![say(format!("deadman {}", rng.u16(100..2_000)))],
-        // The saved travel is narrower than the one in use.
+        // The saved travel is narrower than the travel in use.
         7 => {
             let servo = rng.usize(0..4);
-            // The gaits need 23 degrees; beyond 23.9 a leg's margin is too small.
+            // The gaits need 23 degrees of travel; beyond 23.9 degrees a leg's margin is too small.
             let degrees = 23.2;
             let narrow = travel(servo, degrees, robot);
             let neutral = robot.servos().map(|servo| servo.neutral);
@@ -92,7 +92,7 @@ pub fn settings(rng: &mut Rng, robot: &Robot) -> Vec<Step> {
                 wait(400),
             ]
         }
-        // Every number of every servo changes.
+        // Changes the scale and the trim of every servo.
         8 => {
             let scales = (1..=4).map(|servo| say(format!("scale {servo} {WIDE_SCALE}")));
             let trims = (1..=4).map(|servo| say(format!("trim {servo} 3.3")));

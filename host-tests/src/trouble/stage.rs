@@ -1,4 +1,4 @@
-//! Player of scenarios: plays one on a simulated UNO and records everything observable.
+//! Player of scenarios: plays a scenario on a simulated UNO and records everything that is observable from outside.
 
 use fastrand::Rng;
 use lizard_core::console::command::{effect, parse};
@@ -18,20 +18,21 @@ use super::step::Step;
 /// The longest wait for an answer, ms.
 const TIMEOUT_MS: u64 = 400;
 
-/// Number of `status` questions after which the search for the robot ends: 5 at the slowest rate, and some more.
+/// Number of `status` lines after which [`Stage::ask_until_answered`] ends: a robot with another baud rate needs up
+/// to five lines to find the rate of the line.
 const MAX_QUESTIONS: u32 = 12;
 
-/// The voltages of a good supply and of a weak one under load, mV.
+/// The voltage of a good supply, mV; `FALLEN_MV` is that of a weak supply under load.
 const GOOD_MV: f64 = 5_000.0;
 const FALLEN_MV: f64 = 2_400.0;
 
 /// The voltage below which the chip is held in reset, mV, including the largest hysteresis.
 const BROWN_OUT_MV: f64 = 2_725.0;
 
-/// Cycles of a byte on the serial line.
+/// Cycles of a byte sent to the board at 115 200 baud.
 const BYTE: u64 = 1_389;
 
-/// Cycles for which a servo counts as having pulses after the start of its last one.
+/// Cycles after the start of its last pulse for which a servo counts as having pulses.
 const RECENT: u64 = 25 * CYCLES_PER_MS;
 
 /// A board in a scenario, and its record.
@@ -49,7 +50,7 @@ struct Stage<'a> {
     latest: [Option<u64>; 4],
 }
 
-/// Plays a scenario from power-on to its end.
+/// Plays a scenario from power-on to its end, and returns its record.
 #[must_use]
 pub fn play(image: &Image, robot: &Robot, scenario: &Scenario) -> Record {
     let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
@@ -99,7 +100,7 @@ impl Stage<'_> {
             }
             Step::Hold(cycles) => {
                 self.uno.block_interrupts(*cycles);
-                // The interrupt waits until interrupts are enabled.
+                // The blocking begins only when interrupts are enabled, so the recorded span is a millisecond longer.
                 let end = now + cycles + CYCLES_PER_MS;
                 self.record.holds.push(Span { start: now, end });
             }
@@ -142,7 +143,7 @@ impl Stage<'_> {
         self.record.sent.push((now, line.to_owned()));
     }
 
-    /// Sends `status` until there is an answer.
+    /// Sends `status` until the robot answers, at most [`MAX_QUESTIONS`] times.
     fn ask_until_answered(&mut self) {
         for _ in 0..MAX_QUESTIONS {
             let from = self.record.lines.len();
@@ -155,7 +156,8 @@ impl Stage<'_> {
         }
     }
 
-    /// Adds random bytes to the serial line, half of the time without pauses.
+    /// Sends random bytes to the board: in half of the cases as many as the line can carry in `cycles`, else at most
+    /// a twentieth of them.
     fn add_noise(&mut self, cycles: u64) {
         let largest = cycles / BYTE;
         let count = if self.noise.bool() {
@@ -221,8 +223,8 @@ impl Stage<'_> {
         }
     }
 
-    /// Runs until a cycle. A stall ends with a reset, and a weak supply reacts to the pulses, so the time passes in
-    /// small pieces while there is a stall, a weak supply or a drive.
+    /// Runs until a cycle. A stall ends with a reset, a weak supply reacts to the pulses, and a drive passes bytes
+    /// on, so the run is divided into pieces of a millisecond during a stall, a weak supply or a drive.
     fn run_to(&mut self, until: u64) {
         while self.uno.cycle() < until && self.is_alive() {
             let now = self.uno.cycle();
@@ -241,7 +243,8 @@ impl Stage<'_> {
         }
     }
 
-    /// Records the board's outputs since the last call.
+    /// Records the board's outputs since the last call, lets the drive react to them, ends a stall after a reset and
+    /// updates a weak supply.
     fn record_events(&mut self) {
         let bytes = self.uno.take_transmitted();
         self.record.lines.extend(self.reader.read(&bytes));
@@ -307,7 +310,7 @@ impl Stage<'_> {
     }
 }
 
-/// Returns the received line for its bytes and the cycle at which its end arrived.
+/// Makes the record of a received line from its bytes and the cycle at which its line end arrived.
 fn received(bytes: &[u8], cycle: u64, robot: &Robot) -> Received {
     let is_whole = bytes.len() <= MAX_BYTES && bytes.is_ascii();
     let text = String::from_utf8_lossy(bytes.trim_ascii()).to_ascii_lowercase();
@@ -320,8 +323,8 @@ fn received(bytes: &[u8], cycle: u64, robot: &Robot) -> Received {
     }
 }
 
-/// Returns the effect of a line or, if it is no command, of its longest tail that has one: a reset may have cut off
-/// its beginning.
+/// Returns the effect of a line or, if the line is no command, of its longest tail that has an effect: a reset may
+/// have cut off something that precedes the command.
 fn effect_of_tail(line: &str, robot: &Robot) -> Effect {
     let robot = robot.firmware();
     if parse(line.as_bytes(), robot).is_ok() {

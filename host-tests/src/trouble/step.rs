@@ -7,7 +7,7 @@ use simulated_uno::{Air, CYCLES_PER_MS, CYCLES_PER_US};
 /// One step of a scenario.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Step {
-    /// Sends a line and waits for its answer, up to a timeout.
+    /// Sends a line and waits for its answer for a limited time.
     Say(String),
     /// Sends a line without waiting for its answer.
     Send(String),
@@ -19,25 +19,25 @@ pub enum Step {
     Stall(u64),
     /// Blocks interrupts for this many cycles.
     Hold(u64),
-    /// Pulls the RESET pin.
+    /// Pulls the RESET pin low for an instant.
     Reset,
     /// Cuts the power and restores it.
     PowerCycle,
-    /// Sets the supply, mV.
+    /// Sets the supply voltage, mV.
     Supply(u16),
     /// True connects a weak supply, which falls to 2.4 V whenever three servos have pulses; false
     /// connects a good one.
     Weak(bool),
     /// Lets a person begin to drive by radio. The scenario's own lines go over the cable.
     Drive(Air),
-    /// Lets that person go away with the phone, which ends the drive.
+    /// Lets the person who drives leave with the phone, which ends the drive.
     Leave,
     /// Closes the contact at the pin with this Arduino number if true; opens it if false.
     Contact(u8, bool),
     /// Sends `status` several times, until the robot answers: its serial line may have another
     /// baud rate.
     Find,
-    /// Sends random bytes on the serial line, as many as fit in this many cycles at most.
+    /// Sends random bytes on the serial line, at most as many as it can carry in this many cycles.
     Noise(u64),
 }
 

@@ -1,5 +1,5 @@
-//! Tests of the Arduino library of `arduino/`. `make arduino-test` compiles it as the Arduino IDE does, and it runs
-//! in the simulated UNO: its edges equal those of the Rust engine.
+//! Tests of the Arduino library in `arduino/`. `make arduino-test` compiles the library's examples as the Arduino IDE
+//! does. They run in the simulated UNO, and their edges equal those of the Rust crate `servo-pulses`.
 
 use lizard_host_tests::{FirmwareBench, root};
 use servo_pulses::{CYCLES_PER_US, frame_cycles};
@@ -15,12 +15,12 @@ fn elf(path: &str) -> Uno {
         .unwrap_or_else(|error| panic!("`make arduino-test` builds it: {error}"))
 }
 
-/// Loads the library's example or the tests' sketch of this name.
+/// Loads the sketch of this name, an example of the library or a sketch of the tests.
 fn sketch(name: &str) -> Uno {
     elf(&format!("target/arduino/{name}/{name}.ino.elf"))
 }
 
-/// Returns every edge of the servos' pins, with its cycles since the first one.
+/// Returns every edge of the servos' pins, each with the number of cycles since the first edge.
 fn edges_since_the_first(uno: &Uno) -> Vec<(u64, Pin, bool)> {
     let is_servo = |edge: &&Edge| edge.pin != Pin::d(13);
     let edges: Vec<Edge> = uno.edges().iter().filter(is_servo).copied().collect();
@@ -29,7 +29,7 @@ fn edges_since_the_first(uno: &Uno) -> Vec<(u64, Pin, bool)> {
     edges.iter().map(since).collect()
 }
 
-/// Returns the widths of each pin's pulses in 10 s, cycles, while bytes arrive and are echoed without a pause.
+/// Returns the widths of each pin's pulses in 10 s, cycles, while the sketch echoes a gapless stream of bytes.
 fn widths_in_a_flood(uno: &mut Uno, pins: &[u8]) -> Vec<Vec<u64>> {
     uno.run_ms(100);
     uno.take_edges();
@@ -174,7 +174,8 @@ fn angles_and_widths_are_those_of_the_servo_library() {
     assert!(uno.run_until_line(100 * CYCLES_PER_MS));
     let numbers = uno.take_transmitted();
     let numbers: Vec<u8> = numbers.iter().map(|byte| byte.byte).collect();
-    // For each attached servo its index plus `attached`, which is 1; 255 for a ninth servo, and for pin 20.
+    // The sketch prints, for each attached servo, the servo's index plus `attached()`, which is 1; 255 for a ninth
+    // servo, and for pin 20.
     assert_eq!(String::from_utf8_lossy(&numbers), "12345678255255\r\n");
     for (value, angle, us) in [
         (0, 0, 1000),
@@ -206,7 +207,7 @@ fn angles_and_widths_are_those_of_the_servo_library() {
             widths.iter().all(|width| *width == us * 16),
             "{value}: {widths:?}"
         );
-        // All other pins have no servo attached any more.
+        // No other pin has a servo attached any more.
         assert!(uno.edges().iter().all(|edge| edge.pin == Pin::d(2)));
     }
 }

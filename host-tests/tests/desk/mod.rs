@@ -1,5 +1,5 @@
-//! A new board at a serial port of this machine, for programs that write boards. It is a simulated UNO at a pseudo
-//! terminal, in real time, with the boot loader of a stock UNO or of an old Nano in its flash.
+//! A new board at a serial port of this machine, for tests of programs that write firmware to boards: a simulated UNO
+//! at a pseudo terminal, in real time, with the boot loader of a stock UNO or of an old Nano in its flash.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -23,7 +23,7 @@ pub fn loader(name: &str) -> Image {
     Image::read(path).expect("`make flash-test` makes the boot loaders")
 }
 
-/// A board at a serial port of this machine.
+/// A simulated board at a serial port of this machine, and the edges of its pins.
 pub struct Desk {
     pub uno: Uno,
     pub port: Port,
@@ -43,12 +43,12 @@ impl Desk {
         }
     }
 
-    /// The name of the board's serial port.
+    /// The path of the board's serial port.
     pub fn name(&self) -> String {
         self.port.path().display().to_string()
     }
 
-    /// Runs the board until the condition holds. Returns false if it does not hold in time.
+    /// Runs the board until the condition holds. Returns false if the condition does not hold within the time limit.
     pub fn run_until(&mut self, mut done: impl FnMut(&mut Uno) -> bool) -> bool {
         LIMIT.wait_for(|| {
             let step = Duration::from_millis(10);
@@ -60,7 +60,7 @@ impl Desk {
         })
     }
 
-    /// Waits until `text` is on the screen. Fails if it does not appear in time.
+    /// Runs the board until `text` is on the screen. Fails if the text does not appear within the time limit.
     pub fn wait_for_text(&mut self, shell: &Shell, text: &str) {
         let seen = self.run_until(|_| shell.screen().contains(text) || shell.has_ended());
         let screen = if shell.has_ended() {
@@ -86,7 +86,7 @@ impl Desk {
         screen
     }
 
-    /// Returns the addresses below the boot loader at which the flash differs from a program.
+    /// Returns the addresses before the boot loader at which the flash differs from a program.
     pub fn differences(&self, program: &[u8]) -> Vec<usize> {
         let flash = self.uno.flash();
         (0..BOOT_LOADER_START)
@@ -94,7 +94,7 @@ impl Desk {
             .collect()
     }
 
-    /// Checks that the flash holds a program and an unchanged boot loader.
+    /// Checks that the flash contains this program and an unchanged boot loader.
     pub fn assert_written(&self, program: &[u8]) {
         let wrong = self.differences(program);
         assert!(wrong.is_empty(), "the flash differs at {wrong:x?}");

@@ -1,5 +1,5 @@
 //! Robustness test of the running image: random bytes, and lines that are nearly valid, as fast as the serial line
-//! carries them, for 15 seconds each, multiplied by `LIZARD_FUZZ`.
+//! carries them, for 15 seconds each (`LIZARD_FUZZ` times as long if that is set).
 
 use fastrand::Rng;
 use lizard_core::memory::copies::{self, Outcome};

@@ -1,4 +1,4 @@
-//! Servo settings, measured at the pins, and the settings that survive a loss of power.
+//! Tests of the servo settings, measured at the pins, and of the settings that survive a loss of power.
 
 use lizard_host::sim::frame::FRAME;
 use lizard_host_tests::robot;
@@ -121,7 +121,7 @@ fn saved_settings_shape_the_pulses_after_the_next_power_on() {
         assert_near(widths[0], width(1.5, gain(), 0.0), "trimmed");
         power_cycle(&mut bench);
         bench.run_ms(700);
-        // The widths are the saved ones from the first pulse on.
+        // From the first pulse on, the widths are those of the saved settings.
         for (pulses, width) in pulses(&bench).iter().zip(widths) {
             assert!(pulses.len() > 10 && pulses.iter().all(|pulse| pulse.width == width));
         }

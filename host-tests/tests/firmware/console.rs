@@ -1,4 +1,4 @@
-//! The console: each line has one answer, and the pulses agree with it.
+//! Tests of the console: each line gets one answer, and the pulses agree with that answer.
 
 use fastrand::Rng;
 use lizard_host::sim::analysis::instants;
@@ -10,8 +10,8 @@ use crate::{
     SECOND, Status, angles, awake, first_moving_gait, gaits, in_both, pose_at, robot_after, widths,
 };
 
-/// Largest rounding error of a printed angle, deg: half a step of two decimals, of a pulse and of the neutral
-/// angle.
+/// Largest rounding error of a printed angle, deg: half a step each of the two printed decimals, of the pulse width
+/// and of the neutral angle.
 const MAX_PRINT_ERROR: f64 = 0.005 + 0.0032 + 0.0028;
 
 #[test]
@@ -78,8 +78,8 @@ fn a_line_may_have_63_characters_and_no_more() {
     assert_eq!(bench.say("stop"), "ok stop", "the next line is a new one");
 }
 
-/// Returns poses that break a servo's travel, a margin and a slider's stroke, each with its error code. Some robots
-/// have no pose that breaks a stroke but nothing that is checked earlier.
+/// Returns poses that break a servo's travel, a margin and a slider's stroke, each with its error code. The pose for
+/// the stroke is missing if, on this robot, each such pose also breaks a limit that the guard checks earlier.
 fn refused_poses() -> Vec<(String, u8)> {
     let mut rng = Rng::with_seed(1);
     let mut found: [Option<String>; 3] = [None, None, None];
@@ -125,9 +125,9 @@ fn refused_poses() -> Vec<(String, u8)> {
         .collect()
 }
 
-/// Returns the error code of a pose within the travel; `None` if the pose is allowed or the code is not certain.
-/// The guard first checks the margins of both ends, where crossed crank tips are a type-2 margin below 0. It checks
-/// the strokes last.
+/// Returns the error code of a pose within the travel; `None` if the pose is allowed, or so close to a limit that
+/// rounding decides its code. The guard first checks the margins of both five-bars; for the guard, crossed crank tips
+/// are a type-2 margin below 0. It checks the strokes last.
 fn certain_refusal_code(solution: &Solution) -> Option<u8> {
     let broken = |by: f64, stroke: bool| {
         let mut all = limits(by).violations(solution);
@@ -144,8 +144,8 @@ fn certain_refusal_code(solution: &Solution) -> Option<u8> {
     }
 }
 
-/// Returns the robot's limits, made stricter by `by`: sines by `by`, and strokes by ten times that in mm for a
-/// robot of the paper's size.
+/// Returns the robot's limits, made stricter by `by`: the sines by `by`, and the strokes by `10 * by` mm for a robot
+/// of the paper's size.
 fn limits(by: f64) -> Limits {
     let limits = robot().limits();
     let size = robot().lizard().links.l10 / 135.0;
@@ -361,7 +361,7 @@ fn half_speed_takes_twice_the_time() {
         bench.run_ms(3000); // the move to the gait's first pose
         let moving = first_moving_gait();
         let gait = robot().gait(&moving).expect("a gait");
-        // The pace is a whole number of 1/1024, so a pace of 10 % has an error of up to half a percent.
+        // The pace is a multiple of 1/1024, so a pace of 10 % has an error of up to half a percent.
         let frames = (gait.period() * SECOND as f64).ceil() as u64;
         let fastest = robot().pace().gait_slew / SECOND as f64;
         let mut spans: Vec<u64> = Vec::new();
@@ -373,7 +373,8 @@ fn half_speed_takes_twice_the_time() {
             let sent = widths(&bench.run_for_frames(2 * cycle));
             let (once, again) = sent.split_at(cycle as usize);
             for (i, servo) in robot().servos().iter().enumerate() {
-                // Half a percent of a cycle, and the part of a frame by which the cycle does not end on one.
+                // Allows half a percent of a cycle, and the part of a frame by which a cycle is no whole number of
+                // frames.
                 let frame = 16.0 * servo.us_per_degree.abs() * fastest;
                 let max = 0.005 * gait.period() * SECOND as f64 * frame + frame + 2.0;
                 for (here, later) in once.iter().zip(again) {

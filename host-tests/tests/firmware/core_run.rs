@@ -9,7 +9,7 @@ use simulated_uno::{CYCLES_PER_MS, FREQUENCY, Fidelity};
 
 use crate::{Status, awake, comparable_line, for_each};
 
-/// Cycles of a byte that the sender sends, rounded up.
+/// Cycles that one byte takes on the serial line, rounded up.
 const BYTE: u64 = 1400;
 
 /// Returns the last cycle that is compared.
@@ -127,8 +127,8 @@ fn random_commands_give_the_same_widths_on_the_avr_and_here() {
         let enough = [2_900, 100, 500].map(|each| each * minutes());
         assert!(count > enough[0] && sent_lines > enough[1] && poses > enough[2]);
 
-        // The answers are also the same, except for the counters of faults, which are 0 here. Reports are not
-        // compared, since the frame in which one is printed also depends on the room in the serial buffer.
+        // The answers also agree, except for the fault counters, which are 0 on the host. Reports are not compared,
+        // since the frame in which one is printed also depends on the free space in the serial buffer.
         let is_answer = |line: &&str| !line.starts_with('#');
         let printed = |line: &'_ str| comparable_line(line, fidelity);
         let asked = commands.written.lines().filter(is_answer).map(printed);

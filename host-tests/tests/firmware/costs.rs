@@ -1,4 +1,4 @@
-//! The firmware's costs: every budget of `lizard sim bench` that is counted in cycles or bytes is met.
+//! Tests of the firmware's costs: it meets every budget of `lizard sim bench` that is counted in cycles or bytes.
 
 use lizard_host::bench::{Figures, rows};
 use lizard_host_tests::{FRAME, FirmwareBench, patrolling, robot};
@@ -62,7 +62,7 @@ fn every_tick_computes_one_frame() {
     let calls = bench.time_calls("Control::frame", 2000);
     assert_eq!(calls.len() as u64, 2 * SECOND);
     for pair in calls.windows(2) {
-        // The distance from each tick to the next is constant, except for an instruction in progress and for
+        // The time from each tick to the next is constant, except for an instruction in progress and for
         // branches.
         let apart = pair[1].enter - pair[0].enter;
         assert!(apart.abs_diff(FRAME) < 100, "{apart}");

@@ -1,4 +1,4 @@
-//! Counters of faults: every one is provoked, and read while it changes.
+//! Tests of the fault counters: each fault is provoked, and its counter is read while it changes.
 
 use lizard_host::sim::frame::FRAME;
 use simulated_uno::Fidelity;
@@ -29,8 +29,8 @@ fn a_count_that_carries_while_main_reads_it_is_read_as_before_or_after() {
     in_both(|fidelity| {
         let mut walk = Walk::stand(fidelity);
         let late = walk.address("pulses::LATE");
-        // From here on a late pulse has stopped the robot, and the count of frames has four digits, so that all
-        // answers have the same length.
+        // From here on, the robot has stopped because of a late pulse, and the count of frames has four digits, so
+        // all answers have the same length.
         walk.bench.uno.poke(late, 255);
         walk.bench.run_ms(20_000);
         let start = walk.next_frame();
@@ -46,13 +46,14 @@ fn a_count_that_carries_while_main_reads_it_is_read_as_before_or_after() {
             if again == written {
                 break;
             }
-            // At some places a tick delays the answer only sometimes. A little earlier in the frame it always does,
-            // or never.
+            // At some points of the frame, a tick delays the answer only sometimes. A little earlier in the frame, it
+            // delays every answer or none.
             early += 200 * u64::from(frame > 4);
             written = again;
             assert!(frame < 40, "the answer takes as long each time");
         }
-        // Stalls main at different times around that read, and delays A2's rising edge meanwhile.
+        // Stalls main at different times around its read of the count, and delays A2's rising edge during the
+        // stall.
         for n in 0..500 {
             // Sending the answer takes most of a frame, and a note may come before it.
             let rise = rise(frame + n + 2);

@@ -1,6 +1,6 @@
-//! Behaviour without a valid robot section in the flash, whatever else is there: the robot sends no pulse, and
-//! everything else works. The core's own tests try every bit (`section/damaged.rs`). Here the image itself is
-//! tested on the chip's flash, where no slice ends.
+//! Tests of the firmware with anything but a valid robot section in the flash: it sends no pulse, and its console
+//! and LED say why. The core's own tests (`section/damaged.rs`) flip every bit. Here the firmware itself reads the
+//! chip's flash, where no slice bound stops a read beyond the section.
 
 use std::mem::offset_of;
 use std::ops::Range;
@@ -50,7 +50,7 @@ fn damage_section(
     }
 }
 
-/// Returns the robot's section with a change and a correct checksum, as if it had been written this way.
+/// Returns the robot's section with a change and a checksum that is correct for the changed bytes.
 fn damage_with_checksum(what: &str, change: impl FnOnce(&mut Vec<u8>)) -> Damage {
     damage_section(what, DAMAGED, |section| {
         change(section);
@@ -64,7 +64,7 @@ fn put_word(section: &mut [u8], offset: usize, word: u16) {
     section[at..at + 2].copy_from_slice(&word.to_le_bytes());
 }
 
-/// Returns damages without a section, with a part of one, or with a section for another version.
+/// Returns damages that leave no section, a part of one, or a section for another version.
 fn missing_sections() -> Vec<Damage> {
     let mut all = vec![
         damage_section("erased flash", MISSING, Vec::clear),
@@ -109,7 +109,8 @@ fn missing_sections() -> Vec<Damage> {
     all
 }
 
-/// Returns damages with a flipped bit: one in each field of the header, and one in each of forty parts of the rest.
+/// Returns damages of one flipped bit each: one for each field of the header, and one for each of forty parts of the
+/// rest of the section.
 fn flipped_bits() -> Vec<Damage> {
     let rng = &mut rng(161);
     let header = size_of::<Header>();
@@ -244,7 +245,7 @@ fn impossible_numbers_move_no_servo_even_with_a_valid_checksum() {
     for_each(&wrong_sections(), assert_finds_no_robot);
 }
 
-/// Compared with a compiled-in robot, the check of the section is the only cost at the start.
+/// The check of the section is all that the start costs more than with a compiled-in robot.
 #[test]
 fn the_largest_section_is_checked_within_a_frame() {
     for_each(

@@ -6,9 +6,9 @@ use simulated_uno::Fidelity;
 use crate::in_both;
 use crate::walk::Walk;
 
-/// Returns the number of bytes, and the cycles from one to the next, in which main has time to fall asleep. With
-/// the data sheet's corrections a byte comes at every cycle of a frame, since this distance and a frame have no
-/// common factor; in stock simavr at every fifth cycle, since they have the factor five.
+/// Returns the number of bytes to send and the interval between two bytes in cycles, long enough for main to fall
+/// asleep. With the data sheet's corrections, the bytes cover every cycle of a frame, since the interval and the
+/// frame have no common factor. In stock simavr, they cover every fifth cycle, since the common factor is five.
 const fn sweep(fidelity: Fidelity) -> (u64, u64) {
     match fidelity {
         Fidelity::DataSheet => (FRAME, 3_001),

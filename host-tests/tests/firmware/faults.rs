@@ -1,4 +1,4 @@
-//! Faults that stop a motion: each has its word, its message and its number of flashes.
+//! Tests of the faults that stop a motion: each has its own word in `status`, message and number of LED flashes.
 
 use lizard_host::sim::frame::FRAME;
 use lizard_host_tests::FirmwareBench;

@@ -1,4 +1,4 @@
-//! Gaits as the servos receive them: the pulses and the travel agree with the gaits in floating point.
+//! Tests of the gaits at the servo pins: the pulses and the robot's travel agree with the gaits in floating point.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -9,19 +9,20 @@ use simulated_uno::Fidelity;
 
 use crate::{SECOND, awake, for_each};
 
-/// Largest deviation of the tables from floating point that the project promises, deg.
+/// Largest deviation of the gait tables from floating point that the project promises, deg.
 const TABLES: f64 = 0.50;
-/// Returns the error of rounding to a cycle of 62.5 ns, deg: half a cycle each for the width and for the neutral
-/// width.
+/// Returns the largest error from rounding to a cycle of 62.5 ns, deg: half a cycle each for the width and for the
+/// neutral width.
 fn cycle() -> f64 {
     let finest = robot().servos().map(|servo| servo.us_per_degree.abs());
     1.0 / 16.0 / finest.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// Number of frames in which a gait accelerates at its start, and the share of its pace that each of them adds.
+/// Number of frames in which a gait accelerates at its start, and the share of the full pace that each of these
+/// frames adds.
 const ACCELERATION: (usize, f64) = (7, 147.0 / 1024.0);
 
-/// Returns the servo angles frame by frame, deg, from a second after power-on, when the gait is ordered.
+/// Orders a gait one second after power-on and returns the servo angles of each frame from then on, deg.
 fn decode_angles(gait: &CheckedGait, fidelity: Fidelity) -> Vec<[f64; 4]> {
     let mut bench = awake(fidelity);
     let line = gait.name().replace('-', " ");
@@ -43,7 +44,7 @@ fn expected_angles(gait: &CheckedGait, frames: usize) -> Vec<[f64; 4]> {
     (0..frames).map(|n| gait.angles(phase(gait, n))).collect()
 }
 
-/// Returns the largest deviation of a servo from the gait if it starts at frame `start`, deg.
+/// Returns the largest deviation of any servo angle from the gait if the gait starts at frame `start`, deg.
 fn worst(float: &[[f64; 4]], frames: &[[f64; 4]], start: usize) -> f64 {
     let pairs = frames[start..].iter().flatten().zip(float.iter().flatten());
     pairs.fold(0.0, |largest, (actual, expected)| {
@@ -51,12 +52,12 @@ fn worst(float: &[[f64; 4]], frames: &[[f64; 4]], start: usize) -> f64 {
     })
 }
 
-/// Returns the frame at which the gait starts, the only unknown of the comparison: the one with the smallest
-/// deviation.
+/// Returns the frame at which the gait starts: the frame with the smallest deviation, since the start is the only
+/// unknown of the comparison.
 fn first_frame(gait: &CheckedGait, float: &[[f64; 4]], frames: &[[f64; 4]]) -> usize {
     let by_worst =
         |a: &usize, b: &usize| worst(float, frames, *a).total_cmp(&worst(float, frames, *b));
-    // The move to the first pose comes before, and a cycle must follow.
+    // The move to the first pose precedes the start, and a whole cycle must follow it.
     let last = frames.len() - (gait.period() * SECOND as f64) as usize - 10;
     let start = (0..last).min_by(by_worst);
     start.expect("a second has frames")
@@ -112,7 +113,7 @@ fn the_pulses_of_every_gait_lead_where_the_contact_model_says() {
         } else {
             2
         };
-        // For other periods, the missing part of a frame is small enough.
+        // If two cycles are no whole number of frames either, the missing part of a frame is negligible.
         let length = (f64::from(cycles) * gait.period() * SECOND as f64) as usize;
         let step = 1.0 / (gait.period() * SECOND as f64);
         let from = (start + ACCELERATION.0..frames.len())

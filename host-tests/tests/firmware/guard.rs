@@ -1,4 +1,4 @@
-//! Tests of the guard on the chip: it refuses exactly the unsafe poses, and no unsafe frame gets past it.
+//! Tests of the guard on the chip: it refuses exactly the unsafe poses, and lets no unsafe frame pass.
 
 use fastrand::Rng;
 use lizard_core::guard::clearance::Clearance;
@@ -13,13 +13,13 @@ use simulated_uno::Fidelity;
 
 use crate::{SECOND, Status, awake, for_each, neutral_widths};
 
-/// Returns the largest error of the guard in a slider's travel against floating point, mm.
+/// Returns the largest error of the guard's slider position against floating point, mm.
 fn stroke_band() -> f64 {
     let scales = Side::ALL.map(|side| robot().firmware().side(side).scale.bits);
     STEPS_BAND / f64::from(1 << scales[0].min(scales[1]))
 }
 
-/// Returns the largest error of the guard in a margin, if type-2 margins are at least `type2`.
+/// Returns the largest error of a margin that the guard computes, if the type-2 margins are at least `type2`.
 fn margin_error(type2: f64) -> f64 {
     let ends = [
         (End::Head, kinematics::End::Head),
@@ -60,7 +60,7 @@ fn is_within_travel(angles: [f64; 4]) -> bool {
     })
 }
 
-/// Returns a random pose within this many degrees of neutral, rounded as it is typed.
+/// Returns a random pose within this many degrees of neutral, rounded to the two decimals that the console takes.
 fn near_pose(rng: &mut Rng, within: f64) -> [f64; 4] {
     std::array::from_fn(|i| {
         let angle = robot().servos()[i].neutral + within * (2.0 * rng.f64() - 1.0);
@@ -125,8 +125,8 @@ fn parse_refusal(answer: &str) -> (&str, Option<f64>) {
     (&name[4..], Some(value.expect("a number")))
 }
 
-/// Returns the value of the named condition in floating point, and the guard's largest error in it. The name begins
-/// with the error code.
+/// Returns the value of the named condition in floating point, and the guard's largest error of that value. The name
+/// begins with the error code. `None` if no condition has this name.
 fn float_value_and_tolerance(solution: &Solution, name: &str) -> Option<(f64, f64)> {
     let margins = &solution.margins;
     // The margin is negative if the crank tips have crossed.
@@ -138,7 +138,7 @@ fn float_value_and_tolerance(solution: &Solution, name: &str) -> Option<(f64, f6
             margins.type2[end]
         }
     };
-    // Where the couplers are nearly in line, a rounding step of a length turns them a lot.
+    // Where the couplers are nearly in line, a rounding step of a length turns them by a large angle.
     let of_end = |end: usize| margin_error(margins.type2[end].max(0.05)) + 0.0005;
     let of_stroke = stroke_band() + 0.005;
     let all = [
@@ -174,8 +174,8 @@ fn a_refusal_names_the_margin_and_its_value_or_says_that_it_knows_none() {
         let solution = match robot().lizard().solve(&Pose::from(angles)) {
             Ok(solution) => solution,
             Err(open) => {
-                // A loop that does not close has no value. But the head is checked first, and may have a value
-                // while the tail does not close.
+                // A five-bar that does not close has no margins. But the guard checks the head first, so it may
+                // print the head's value although the tail does not close.
                 let head = robot().lizard().end(kinematics::End::Head);
                 let head = head.forward(angles[0], angles[1]);
                 match head {
@@ -244,7 +244,7 @@ fn no_frame_breaks_a_limit_for_any_commands() {
             let angles = at.angles.expect("four pulses");
             assert!(is_safe(angles, &lax), "{at:?}");
         }
-        // No servo jumps: it moves in a frame at most as far as the slew limits allow.
+        // No servo moves farther in a frame than the slew limits allow.
         let pace = robot().pace();
         let fastest = pace.gait_slew.max(pace.slew) / 50.0;
         for (pair, times) in sent.windows(2).zip(frames.windows(2)) {
@@ -289,7 +289,7 @@ fn poses_with_unsafe_path_between() -> Option<[[f64; 4]; 2]> {
             if let Some(edge) = found {
                 return Some([*edge, pose]);
             }
-            // Keeps few poses, so that each pair can be tried: a robot may have no such path.
+            // Keeps few poses, so that all pairs can be tried: a robot may have no unsafe path.
             if edges.len() < 40 {
                 edges.push(pose);
             }
@@ -298,7 +298,8 @@ fn poses_with_unsafe_path_between() -> Option<[[f64; 4]; 2]> {
     None
 }
 
-/// Checks that a robot without such a path reaches every safe pose and is never held.
+/// Checks that the robot reaches every safe pose and that the guard never holds it, for robots without an unsafe
+/// path between two safe poses.
 fn assert_every_safe_pose_is_reached() {
     let mut rng = Rng::with_seed(4);
     let mut bench = awake(Fidelity::DataSheet);

@@ -1,4 +1,4 @@
-//! Tests with blocked interrupts, within the time that the rules of the pulses allow and beyond it.
+//! Tests of the servo pulses while interrupts are blocked, for at most [`MAX_BLOCKED`] cycles and for longer.
 
 use fastrand::Rng;
 use lizard_host::sim::frame::{FRAME, Frame};
@@ -8,17 +8,17 @@ use crate::pulses::servo_edges;
 use crate::walk::{SLOT, Walk};
 use crate::{in_both, neutral_widths};
 
-/// Longest time that other handlers and code with interrupts disabled may take, cycles.
+/// Longest time for which other handlers and code with interrupts disabled may delay a servo interrupt, cycles.
 const MAX_BLOCKED: u64 = 160;
 
-/// A time of `length` cycles with interrupts blocked, which begins `before` cycles before an edge.
+/// An interval of `length` cycles with interrupts blocked, which begins `before` cycles before an edge.
 #[derive(Clone, Copy, Debug)]
 struct Hold {
     before: u64,
     length: u64,
 }
 
-/// The edges that the holds delay.
+/// The pulse edges that the blocked intervals delay.
 #[derive(Clone, Copy, PartialEq)]
 enum Edges {
     Rising,
@@ -26,8 +26,8 @@ enum Edges {
     Both,
 }
 
-/// Runs one frame for each hold, which delays the chosen edges of all servos. Returns the frames with their ordered
-/// widths.
+/// Runs one frame for each blocked interval, which delays the chosen edges of all servos. Returns the frames with
+/// their ordered widths.
 fn sweep(walk: &mut Walk, edges: Edges, holds: &[Hold]) -> Vec<(Frame, [u64; 4])> {
     let start = walk.next_frame();
     let commands = walk.commands(start, holds.len() as u64);
@@ -47,8 +47,8 @@ fn sweep(walk: &mut Walk, edges: Edges, holds: &[Hold]) -> Vec<(Frame, [u64; 4])
     walk.frames_since(start)
 }
 
-/// Returns holds of several lengths beyond the allowed one, with starts every few cycles: from holds that begin at
-/// the edge to holds that end before it.
+/// Returns blocked intervals of several lengths above [`MAX_BLOCKED`]. For each length, their starts are a few cycles
+/// apart: the first interval begins at the edge, the last one ends before it.
 fn holds_beyond_limit() -> Vec<Hold> {
     [200, 230, 300, 500, 900]
         .into_iter()
@@ -109,7 +109,7 @@ fn a_late_falling_edge_is_made_at_once_and_counted() {
             let Hold { before, length } = holds[n];
             for (sent, asked) in frame.widths().into_iter().zip(asked) {
                 late += u64::from(sent != *asked);
-                // After the hold, the handler's prologue still takes its time.
+                // After the blocked interval, the handler's prologue still takes its time.
                 let latest = (asked + length + 90).saturating_sub(before).max(*asked);
                 assert!(
                     (*asked..=latest).contains(&sent),
@@ -163,7 +163,7 @@ fn a_falling_edge_that_is_missed_is_made_when_the_next_slot_begins() {
         let mut walk = Walk::stand(fidelity);
         let pins = walk.bench.pins();
         let neutral = neutral_widths();
-        // The hold ends `beyond` cycles after a point that is 220 cycles before the next slot's edge.
+        // The blocked interval ends between 220 cycles before the next slot's edge and 360 cycles after it.
         for beyond in (0..600).step_by(20) {
             for servo in 0..4 {
                 walk.bench.run_for_frames(1);

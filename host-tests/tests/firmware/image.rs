@@ -1,4 +1,4 @@
-//! Contents of the firmware's ELF: it has no panic, no floating point and no core::fmt, and its tables stay in
+//! Tests of the firmware's ELF: it contains no panic, no floating point and no `core::fmt`, and its tables stay in
 //! flash.
 
 use std::process::Command;
@@ -12,7 +12,7 @@ fn image() -> Image {
     FirmwareBench::image()
 }
 
-/// Returns the paths of the functions that contain one of these parts.
+/// Returns the paths of the functions whose path contains one of these parts.
 fn functions_with(parts: &[&str]) -> Vec<String> {
     let image = image();
     let functions = image.symbols().iter().filter(|symbol| symbol.is_function);
@@ -143,7 +143,8 @@ fn an_image_without_room_is_refused_with_the_excess_and_what_is_largest() {
         .symbol("__code_end")
         .expect("it is in the ELF")
         .address;
-    // The script uses the addresses at which the robot's section begins and ends.
+    // The script takes the bounds of the robot's section from two symbols, so moving a symbol makes the code or
+    // the robot too large.
     let check_with = |symbol: &str, address: u64| {
         let done = Command::new("avr-objcopy")
             .arg(format!("--strip-symbol={symbol}"))

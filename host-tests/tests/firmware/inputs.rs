@@ -16,10 +16,10 @@ use crate::{SECOND, Status, in_both};
 const BUTTON: Pin = Pin::a(1);
 const NOSE: Pin = Pin::a(2);
 
-/// The longest time for which a contact must be closed to count, ms.
+/// The time after which a closed contact is certain to count as closed, ms.
 const DEBOUNCE_MS: u64 = 60;
 
-/// The largest mean duration of a frame's computation, cycles.
+/// The largest allowed mean duration of a frame's computation, cycles.
 const TICK: u64 = 5_000;
 
 /// Returns the paper's robot with the patrol of docs/gaits.md.
@@ -28,7 +28,7 @@ fn robot() -> &'static Robot {
     &ROBOT
 }
 
-/// Returns the same robot with its contacts at other pins.
+/// Returns the paper's robot with the patrol of docs/gaits.md, its button and obstacle switch at these pins.
 fn with_pins(button: &str, nose: &str) -> Robot {
     let read = |file: &str| fs::read_to_string(root().join(file)).expect(file);
     let docs = read("docs/gaits.md");
@@ -43,7 +43,7 @@ fn with_pins(button: &str, nose: &str) -> Robot {
     Robot::parse(&text).expect("a robot")
 }
 
-/// Returns a board with this robot, a second after power-on.
+/// Returns a board with this robot, a second after power-on, with both contacts open.
 fn awake(robot: &Robot, fidelity: Fidelity) -> FirmwareBench {
     let board = SimulatedBoard::boot(&FirmwareBench::elf(), fidelity, robot).expect("a banner");
     let mut bench = FirmwareBench::with_board(board);
@@ -63,7 +63,7 @@ fn waiting(fidelity: Fidelity) -> FirmwareBench {
     bench
 }
 
-/// Returns a robot whose patrol walks until it meets a wall.
+/// Returns a robot whose patrol walks until its obstacle switch closes.
 fn walking(fidelity: Fidelity) -> FirmwareBench {
     let mut bench = waiting(fidelity);
     press(&mut bench, BUTTON, 200);
@@ -77,7 +77,7 @@ fn press(bench: &mut FirmwareBench, pin: Pin, ms: u64) {
     bench.uno.set_contact(pin, false);
 }
 
-/// Returns the lines from line `since` on that no command asked for, without those printed at the start.
+/// Returns the notes from line `since` on, the lines that begin with `#`, without those printed at the start.
 fn notes(bench: &mut FirmwareBench, since: usize) -> Vec<String> {
     let lines = bench.lines()[since..].iter().map(|line| line.text.clone());
     let starts = ["# lizard", "# calibration"];

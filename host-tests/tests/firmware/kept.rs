@@ -1,14 +1,14 @@
-//! Shared parts of the tests of calibration, power cuts and faults.
+//! Helpers for the tests of calibration, power cuts and faults.
 
 use lizard_host_tests::FirmwareBench;
 use simulated_uno::{Pin, Pulse};
 
 use crate::robot;
 
-/// The LED.
+/// Pin of the LED.
 const LED: Pin = Pin::d(13);
 
-/// Cycles of a millisecond.
+/// Cycles in a millisecond.
 pub const MS: u64 = simulated_uno::CYCLES_PER_MS;
 
 /// Runs for `ms` milliseconds and returns the pulses of A1 to A4 in that time.
@@ -18,12 +18,12 @@ pub fn pulses_in(bench: &mut FirmwareBench, ms: u64) -> [Vec<Pulse>; 4] {
     pulses(bench)
 }
 
-/// The pulses of A1 to A4 among the edges not taken yet.
+/// Returns the pulses of A1 to A4 in the recorded edges, which begin where the edges were last taken.
 pub fn pulses(bench: &FirmwareBench) -> [Vec<Pulse>; 4] {
     bench.pins().map(|pin| bench.uno.pulses(pin))
 }
 
-/// The current widths of the servos, cycles; 0 without a pulse.
+/// Runs for 50 ms and returns the last pulse width of each servo, cycles; 0 for a servo without a pulse.
 pub fn widths_now(bench: &mut FirmwareBench) -> [u64; 4] {
     pulses_in(bench, 50).map(|pulses| pulses.last().map_or(0, |pulse| pulse.width))
 }
@@ -47,7 +47,7 @@ pub fn power_cycle(bench: &mut FirmwareBench) {
     );
 }
 
-/// The lines that `cal` prints.
+/// Returns the lines of the settings that `cal` prints.
 pub fn calibration(bench: &mut FirmwareBench) -> Vec<String> {
     let (lines, answer) = bench.ask("cal");
     assert_eq!(answer, "ok cal");
@@ -59,14 +59,15 @@ pub fn calibration(bench: &mut FirmwareBench) -> Vec<String> {
     lines.into_iter().filter(is_set).collect()
 }
 
-/// The slew limit: cycles by which a pulse may change from frame to frame.
+/// Returns a servo's slew limit: the most by which its pulse width may change from frame to frame, cycles.
 pub fn slew_limit(servo: usize) -> u64 {
     slew_limit_at(robot().servos()[servo].us_per_degree, robot().pace().slew)
 }
 
-/// The slew limit, cycles per frame, of a servo with `gain` us per degree at `slew` deg/s.
+/// Returns the slew limit of a servo with `gain` us per degree at `slew` deg/s, cycles per frame.
 fn slew_limit_at(gain: f64, slew: f64) -> u64 {
-    // One cycle of rounding at each end, and one for the rounding of the limit: half a step of an angle.
+    // One cycle for the rounding of each of the two widths, and one for the rounding of the limit, which is half a
+    // step of an angle.
     (slew / 50.0 * gain.abs() * 16.0) as u64 + 3
 }
 
@@ -88,7 +89,8 @@ pub fn assert_no_leap(pulses: &[Vec<Pulse>; 4]) {
     assert_no_leap_at(pulses, gains);
 }
 
-/// Like [`assert_no_leap`], for servos with these gains, us per degree.
+/// Asserts that no pulse width of servos with these gains (us per degree) differs from the previous one by more than
+/// the slew limit allows.
 pub fn assert_no_leap_at(pulses: &[Vec<Pulse>; 4], gains: [f64; 4]) {
     for (servo, (pulses, gain)) in pulses.iter().zip(gains).enumerate() {
         for pair in pulses.windows(2) {
@@ -102,7 +104,7 @@ pub fn assert_no_leap_at(pulses: &[Vec<Pulse>; 4], gains: [f64; 4]) {
     }
 }
 
-/// Counts the LED's flashes between successive pauses, for `seconds` seconds.
+/// Runs for `seconds` seconds and returns the number of LED flashes between each pause and the next.
 pub fn flashes(bench: &mut FirmwareBench, seconds: u64) -> Vec<usize> {
     bench.uno.take_edges();
     bench.uno.run_ms(1000 * seconds);

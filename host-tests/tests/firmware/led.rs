@@ -1,4 +1,4 @@
-//! The LED on D13, which shows that the board is alive.
+//! Test of the LED on D13, which shows that the board is alive.
 
 use lizard_host::sim::frame::FRAME;
 use lizard_host_tests::FirmwareBench;
@@ -23,7 +23,7 @@ fn the_led_is_lit_at_power_on_and_beats_every_64_hundredths_of_a_second() {
         assert!(beats.len() >= 7, "{} changes in 5 s", beats.len());
         for (n, pair) in beats.windows(2).enumerate().skip(1) {
             assert_ne!(pair[0].high, pair[1].high);
-            // Its time within a frame depends on how long the frame's computation takes.
+            // The LED's time within a frame depends on how long the frame's computation takes.
             let apart = pair[1].cycle - pair[0].cycle;
             assert!(apart.abs_diff(32 * FRAME) < FRAME / 10, "beat {n}: {apart}");
         }

@@ -1,4 +1,4 @@
-//! The settings of the serial line, read from the chip and measured on the wire.
+//! Tests of the settings of the serial line, read from the chip and measured on the wire.
 
 use lizard_host_tests::FirmwareBench;
 use simulated_uno::Fidelity;

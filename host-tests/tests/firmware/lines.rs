@@ -1,11 +1,11 @@
-//! Nearly valid lines: every command with arguments near its ranges, sometimes with a byte or two
-//! changed.
+//! Generator of nearly valid console lines: every command with arguments near its ranges, often with up to three
+//! bytes changed.
 
 use fastrand::Rng;
 use lizard_core::console::word::Word;
 use lizard_host_tests::robot;
 
-/// A number as a person would type it, from `min` to `max` and sometimes a little outside.
+/// Returns a random number with at most two decimals, from `min` to `max` or a fifth of the range beyond.
 fn number(rng: &mut Rng, min: f64, max: f64) -> String {
     let beyond = (max - min) * 0.2;
     let number = min - beyond + rng.f64() * (max - min + 2.0 * beyond);
@@ -16,14 +16,14 @@ fn number(rng: &mut Rng, min: f64, max: f64) -> String {
     }
 }
 
-/// An angle near the neutral one of a servo.
+/// Returns a random angle near the neutral angle of a servo, deg.
 fn angle(rng: &mut Rng, servo: usize) -> String {
     let neutral = robot().servos()[servo].neutral;
     let within = [5.0, 30.0, 100.0][rng.usize(..3)];
     number(rng, neutral - within, neutral + within)
 }
 
-/// A valid line, except that numbers may be out of range.
+/// Returns a random line that is valid, except that its numbers may be out of range.
 fn line(rng: &mut Rng) -> String {
     let gait = |rng: &mut Rng| {
         let gait = &robot().gaits()[rng.usize(..robot().gaits().len())];
@@ -67,7 +67,7 @@ fn line(rng: &mut Rng) -> String {
     }
 }
 
-/// A nearly valid line, without its line end.
+/// Returns a random nearly valid line without its line end.
 pub fn mutated(rng: &mut Rng) -> Vec<u8> {
     let mut bytes = line(rng).into_bytes();
     for _ in 0..[0, 0, 0, 1, 1, 2, 3][rng.usize(..7)] {
@@ -80,7 +80,7 @@ pub fn mutated(rng: &mut Rng) -> Vec<u8> {
             _ => bytes.truncate(offset),
         }
     }
-    // An end of line in the middle makes two lines.
+    // A line end in the middle would make two lines.
     bytes.retain(|byte| !matches!(byte, b'\r' | b'\n'));
     bytes
 }

@@ -1,9 +1,9 @@
-//! The firmware's own ELF on a simulated UNO: its answers, its pulses, its contents and its
+//! Tests of the firmware's own ELF on a simulated UNO: of its answers, its pulses, its contents and its
 //! costs.
 //!
 //! Every claim about pulses and the serial line is tested twice, on stock simavr
-//! and on one corrected by the data sheet: they differ in interrupt latency and
-//! in the receiver, and what holds in both does not depend on either.
+//! and on simavr corrected by the data sheet. The two differ in interrupt latency
+//! and in the serial receiver, so a claim that holds in both depends on neither.
 //!
 //! The ELF is built by `make firmware`. If it is older than the sources, it differs from the core
 //! that these tests are built with, and they fail.
@@ -54,8 +54,8 @@ mod watchdog;
 const SECOND: u64 = 50;
 
 /// Removes from a line the values that the core on the host cannot know. A status is written in three
-/// parts, each in the frame in which the serial line has room for it, so the values of a moving robot
-/// depend on timing. Stock simavr has a reference of 1.1 V, whatever the robot's own is.
+/// parts, each in the frame in which the serial buffer has space for it, so the values of a moving robot
+/// depend on timing. Stock simavr measures against a reference of 1.1 V, whatever the robot's reference is.
 fn comparable_line(line: &str, fidelity: Fidelity) -> String {
     let mut unknown = vec!["phase=", "pose=", "margin=", "frames="];
     if fidelity == Fidelity::Stock {
@@ -66,7 +66,7 @@ fn comparable_line(line: &str, fidelity: Fidelity) -> String {
     line.split(' ').filter(known).collect::<Vec<_>>().join(" ")
 }
 
-/// Runs a test on both simulations at once.
+/// Runs a test on stock simavr and on corrected simavr in parallel.
 fn in_both(test: impl Fn(Fidelity) + Sync) {
     for_each(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
         test(*fidelity)
@@ -86,7 +86,7 @@ fn for_each<T: Sync + std::fmt::Debug>(cases: &[T], test: impl Fn(&T) + Sync) {
     });
 }
 
-/// A robot a second after a command.
+/// Boots the board, sends the command `line` and returns the board one second later.
 fn robot_after(line: &str, fidelity: Fidelity) -> FirmwareBench {
     let mut bench = awake(fidelity);
     assert_eq!(bench.say(line), format!("ok {line}"));
@@ -94,15 +94,15 @@ fn robot_after(line: &str, fidelity: Fidelity) -> FirmwareBench {
     bench
 }
 
-/// A robot that stands, a second after power-on.
+/// Boots the board and returns it one second later, when the robot stands.
 fn awake(fidelity: Fidelity) -> FirmwareBench {
     let mut bench = FirmwareBench::boot_with(fidelity);
     bench.run_ms(1000);
     bench
 }
 
-/// The command of the robot's first gait that moves. Every robot to be tested needs one: without it,
-/// most of these tests would see a robot that only stands.
+/// Returns the command for the robot's first gait that moves. Every robot to be tested needs such a gait: without
+/// it, most of these tests would see a robot that only stands.
 fn first_moving_gait() -> String {
     let moving = tour::moving(robot());
     let first = moving
@@ -111,13 +111,13 @@ fn first_moving_gait() -> String {
     first.replace('-', " ")
 }
 
-/// The commands of all gaits.
+/// Returns the commands for all gaits.
 fn gaits() -> Vec<String> {
     let names = robot().gaits().iter().map(|gait| gait.name());
     names.map(|name| name.replace('-', " ")).collect()
 }
 
-/// The command for a pose at this many degrees from neutral.
+/// Returns the command for a pose with these angles from neutral, deg.
 fn pose_at(sweeps: [f64; 4]) -> String {
     let servos = robot().servos();
     let angles: Vec<String> = (0..4)
@@ -126,14 +126,14 @@ fn pose_at(sweeps: [f64; 4]) -> String {
     format!("pose {}", angles.join(" "))
 }
 
-/// The widths of the neutral pose, cycles.
+/// Returns the pulse widths of the neutral pose, cycles.
 fn neutral_widths() -> [u64; 4] {
     robot()
         .servos()
         .map(|servo| (servo.neutral_us * 16.0).round() as u64)
 }
 
-/// Ends a flood and waits until the robot has answered the rest of it.
+/// Ends a flood of serial input and waits until the robot has answered the lines that it still holds.
 fn end_flood(bench: &mut FirmwareBench) {
     bench.uno.flood(b"");
     // Up to 32 lines `?` may be waiting, and each answer is a kilobyte.
@@ -142,12 +142,12 @@ fn end_flood(bench: &mut FirmwareBench) {
     bench.run_ms(200);
 }
 
-/// The widths of each frame, cycles.
+/// Returns the pulse widths of each frame, cycles.
 fn widths(frames: &[Frame]) -> Vec<[u64; 4]> {
     frames.iter().map(Frame::widths).collect()
 }
 
-/// The answer to `status`, by key.
+/// Values of an answer to `status`, by key.
 struct Status(HashMap<String, String>);
 
 impl Status {
@@ -178,7 +178,7 @@ impl Status {
     }
 }
 
-/// Four angles in degrees, as the console writes them.
+/// Parses four comma-separated angles, deg, as the console writes them.
 fn angles(list: &str) -> [f64; 4] {
     let angles: Vec<f64> = list
         .split(',')

@@ -1,5 +1,5 @@
-//! Pulses that must not occur: those too wide or too narrow for a slot, and any after the
-//! switch that ends pulses for good.
+//! Tests that some pulses never occur: pulses too wide or too narrow for a slot, and any rising edge
+//! after `pulses::ALLOWED` is cleared, which ends the pulses for good.
 
 use lizard_host::sim::frame::FRAME;
 
@@ -13,7 +13,7 @@ const WIDTHS: std::ops::RangeInclusive<u16> = 1_000..=63_000;
 fn a_width_that_a_slot_has_no_room_for_gives_no_pulse() {
     in_both(|fidelity| {
         let mut walk = Walk::stand(fidelity);
-        // Two sets of four widths of two bytes each; A3's width in both sets.
+        // `FRAMES` holds two sets of four widths, two bytes each. A3's width is the third of each set.
         let frames = walk.address("pulses::FRAMES");
         let a3 = [frames + 4, frames + 12];
         let widths = [
@@ -22,7 +22,7 @@ fn a_width_that_a_slot_has_no_room_for_gives_no_pulse() {
         ];
         for width in widths {
             let start = walk.next_frame();
-            // After the hand-over and before A3's slot is planned.
+            // This is after the frame's widths are handed over and before A3's slot is planned.
             walk.run_to(start + 2_000);
             for (address, n) in a3.into_iter().flat_map(|a| [(a, 0), (a + 1, 1)]) {
                 let before = u16::from(walk.bench.uno.peek(address));

@@ -1,4 +1,4 @@
-//! Random robots: with any pins, directions and gaits, no frame is late.
+//! Tests with random robots: no frame is late with any pins, directions and gaits.
 
 use lizard_core::numbers::gaits::MAX_NAME_BYTES;
 use lizard_host::bench::longest_step;
@@ -16,14 +16,14 @@ use crate::{SECOND, for_each};
 /// Lines that move no servo, each sent at the full rate of the serial line.
 const FLOODS: [&str; 5] = ["status\n", "help\n", "cal\n", "?\r", "x"];
 
-/// The number of robots; `make other-robots` tries 100.
+/// Returns the number of random robots; `make other-robots` tries 100.
 fn count() -> u64 {
     let given = std::env::var("LIZARD_ROBOTS").ok();
     given.map_or(4, |count| count.parse().expect("LIZARD_ROBOTS is a number"))
 }
 
-/// Walks a gait under a flood for two seconds and asserts that each frame has the widths that the
-/// core computes for it.
+/// Walks a gait for two seconds under a flood of serial input, and asserts that each frame has the widths
+/// that the core computes for it.
 fn assert_in_time(robot: &Robot, gait: &str, flood: &str, what: &str) {
     let board = SimulatedBoard::power_on(&FirmwareBench::elf(), Fidelity::DataSheet, robot);
     let mut bench = FirmwareBench::with_board(board.expect("the firmware"));

@@ -1,5 +1,5 @@
-//! Power cuts while settings are saved, at every byte and with every torn value of a byte; and
-//! bits that change over the years.
+//! Tests of the saved settings: with power cuts during a save, at every byte and with every torn value of that
+//! byte, and with bits that flip over the years.
 
 use lizard_core::memory::copies::{self, Outcome};
 use lizard_core::memory::settings::Settings;

@@ -1,5 +1,5 @@
-//! The pulses are those of a cold start, whatever a boot loader or a crash has left in the
-//! registers.
+//! Tests of the start: whatever values a boot loader or a crash has left in the registers, the pulses
+//! are those of a cold start.
 
 use lizard_host_tests::FirmwareBench;
 use simulated_uno::{CYCLES_PER_MS, Edge, Fidelity, Uno};
@@ -15,8 +15,8 @@ const OCR1A: u16 = 0x88;
 const SMCR: u16 = 0x53;
 const PORTS: [u16; 3] = [0x25, 0x28, 0x2b];
 
-/// The servos' edges in the first second after a start with these registers; the robot is told
-/// to stand.
+/// Starts the board with these register values, orders the robot to stand, and returns the servos' edges
+/// of the first second.
 fn edges_after(left: &[(u16, u8)], fidelity: Fidelity) -> Vec<Edge> {
     let mut bench = FirmwareBench::power_on(fidelity);
     for (register, value) in left {

@@ -1,4 +1,4 @@
-//! The pulses are exact to the cycle, whatever the serial line does.
+//! Tests of the servo pulses: they are exact to the cycle, whatever the serial line does.
 
 use lizard_host::sim::core_run;
 use lizard_host::sim::frame::{FRAME, Frame};
@@ -7,7 +7,7 @@ use simulated_uno::{Edge, Fidelity, most_pins_high};
 
 use crate::{SECOND, Status, awake, end_flood, first_moving_gait, for_each, in_both};
 
-/// The edges of the servos' pins among the recorded edges.
+/// Returns the recorded edges of the servos' pins.
 pub fn servo_edges(bench: &FirmwareBench) -> Vec<Edge> {
     let pins = bench.pins();
     let of_servo = |edge: &Edge| pins.contains(&edge.pin);
@@ -29,13 +29,15 @@ fn assert_in_step(bench: &FirmwareBench, frames: &[Frame]) {
     assert_eq!(most_pins_high(&edges), 1);
 }
 
-/// The cycle of A1's first pulse since power-on, on a bench that has not run for frames yet.
+/// Returns the cycle of A1's first pulse since power-on. The bench must still hold all edges, so call it before
+/// the bench runs for frames.
 pub fn first_pulse(bench: &FirmwareBench) -> u64 {
     let edges = servo_edges(bench);
     edges.first().expect("the robot stands").cycle
 }
 
-/// The widths that the core commands when it receives only the first `received` bytes.
+/// Returns the widths that the core computes for these frames if it receives only the first `received` bytes.
+/// `first` is the cycle of A1's first pulse.
 pub fn commanded_widths(
     bench: &FirmwareBench,
     first: u64,
@@ -59,8 +61,8 @@ pub fn commanded_widths(
 fn every_width_is_the_one_that_was_asked_for() {
     for_each(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
         for gait in robot().gaits() {
-            // The line is sent while the firmware writes nothing. If it ends so shortly before a tick that
-            // main may have read it before or after the tick, a new bench tries again, a millisecond later.
+            // The line is sent while the firmware writes nothing. If the line ends so shortly before a tick that
+            // main may read it before or after the tick, a new bench sends it a millisecond later.
             let asked_after = |ms| {
                 let mut bench = awake(*fidelity);
                 let first = first_pulse(&bench);

@@ -1,4 +1,4 @@
-//! The rate of the serial line, which the firmware finds by itself.
+//! Tests of the serial line's baud rate, which the firmware finds by itself.
 
 use fastrand::Rng;
 use lizard_host_tests::FirmwareBench;
@@ -8,10 +8,11 @@ use crate::pulses::servo_edges;
 use crate::{Status, awake, first_moving_gait, in_both, robot_after};
 
 /// The rates, baud, each with the number of `status` lines that are sent from a cold start until one is
-/// answered. One is lost at each rate tried before, and one more because the robot does not trust its end.
+/// answered. One line is lost at each rate that the robot tries before, and one more because the robot has heard
+/// only a part of it.
 const RATES: [(f64, u32); 4] = [(115_200.0, 1), (57_600.0, 3), (38_400.0, 4), (9_600.0, 5)];
 
-/// Asks until there is an answer; returns the number of lines sent.
+/// Sends `status` until the robot answers, and returns the number of lines sent.
 pub fn ask_until_answered(bench: &mut FirmwareBench) -> u32 {
     for asked in 1..=40 {
         let printed = bench.lines().len();
@@ -27,7 +28,7 @@ pub fn ask_until_answered(bench: &mut FirmwareBench) -> u32 {
     panic!("no answer at any rate");
 }
 
-/// A robot that has found this rate.
+/// Returns a robot that has found this rate.
 fn robot_at(baud: f64) -> FirmwareBench {
     let mut bench = awake(Fidelity::DataSheet);
     bench.uno.set_baud(baud);
@@ -38,7 +39,7 @@ fn robot_at(baud: f64) -> FirmwareBench {
 
 #[test]
 fn a_robot_answers_at_each_rate_after_a_few_lines_and_then_to_each() {
-    // Only the simulation by the data sheet: stock simavr passes on every byte, whatever its rate.
+    // Only in the simulation by the data sheet: stock simavr delivers every byte, whatever its rate.
     for (baud, lines) in RATES {
         // Slow and fast senders.
         for error in [0.985, 1.0, 1.02] {
@@ -126,7 +127,7 @@ fn no_pulse_moves_by_a_cycle_while_the_rate_is_sought() {
             let mut rates = std::collections::BTreeSet::new();
             for _ in 0..120 {
                 if is_sought {
-                    // 4800 baud is never the chip's rate, at which the robot would obey the bytes.
+                    // The chip never uses 4800 baud, so it cannot read the bytes as commands.
                     bench.uno.set_baud(4_800.0);
                     let line: Vec<u8> = (0..rng.usize(1..30)).map(|_| rng.u8(..)).collect();
                     bench.uno.send(&line);

@@ -1,9 +1,9 @@
-//! The pulses of every robot of robots/, cycle for cycle, are those that were recorded.
+//! Test that the pulses of every robot in robots/ are the recorded ones, cycle for cycle.
 //!
-//! Each robot has one recorded number: a digest of every edge of its servos' pins in ten simulated
-//! minutes of random commands. A pulse that is one cycle longer, later or elsewhere gives another
-//! number. So does an intended change of a robot's values or of the effect of a command: then the
-//! numbers here are replaced with those that the failed test prints.
+//! The record of a robot is a digest of every edge of its servos' pins in ten simulated minutes of
+//! random commands, and the number of edges. A pulse that is one cycle longer or later, or on another
+//! pin, changes the digest. So does an intended change of a robot's values or of the effect of a
+//! command: then replace the records with those that the failed test prints.
 
 use lizard_host::firmware::with_robot;
 use lizard_host::sim::frame::{FRAME, servo_pins};
@@ -14,11 +14,11 @@ use simulated_uno::{CYCLES_PER_MS, Edge, Fidelity, State, Uno};
 
 use crate::{SECOND, for_each};
 
-/// A generator of random numbers that no library can change: xorshift64*, Vigna 2016.
+/// A random number generator whose numbers no update of a library changes: xorshift64*, Vigna 2016.
 struct Random(u64);
 
 impl Random {
-    /// A number below `end`.
+    /// Returns a random number below `end`.
     fn random_below(&mut self, end: u64) -> u64 {
         self.0 ^= self.0 >> 12;
         self.0 ^= self.0 << 25;
@@ -26,7 +26,7 @@ impl Random {
         (self.0.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 32) % end
     }
 
-    /// A number of hundredths, as the console takes it.
+    /// Returns a random number from `min` to `max` hundredths, written with two decimals as the console takes it.
     fn hundredths(&mut self, min: i64, max: i64) -> String {
         let value = min + self.random_below((max - min) as u64 + 1) as i64;
         let sign = if value < 0 { "-" } else { "" };
@@ -35,7 +35,7 @@ impl Random {
     }
 }
 
-/// A random command: mostly gaits, sometimes another one.
+/// Returns a random command, a gait in almost half of the cases.
 fn command(random: &mut Random, robot: &Robot) -> String {
     let servo = 1 + random.random_below(4);
     let neutral = |index: usize| (robot.servos()[index].neutral * 100.0).round() as i64;
@@ -75,14 +75,15 @@ fn command(random: &mut Random, robot: &Robot) -> String {
     }
 }
 
-/// True unless the robot is too large for the space beside code that avr-gcc alone has linked.
+/// True if the robot fits beside the firmware. Without the project's own linker step, the code is larger, and some
+/// robots do not fit.
 fn has_room(name: &str) -> bool {
     let is_plain = option_env!("LIZARD_PLAIN_LINK") == Some("1");
     let robot = Robot::load(root().join(format!("robots/{name}.toml")));
     !(is_plain && robot.is_err_and(|error| error.to_string().contains("bytes")))
 }
 
-/// A digest of all servo edges in ten minutes, and the number of edges.
+/// Runs a robot for ten minutes and returns the digest of all servo edges and their number.
 fn digest(name: &str) -> (u64, u64) {
     let frames = 600 * SECOND;
     let robot = Robot::load(root().join(format!("robots/{name}.toml")));
@@ -115,8 +116,8 @@ fn digest(name: &str) -> (u64, u64) {
     for frame in 0..frames {
         let start = first + frame * FRAME;
         if frame == next {
-            // The line is not sent near a tick, which comes 4 ms before A1's slot, and it has been
-            // obeyed before the next one is sent.
+            // The line is sent far from a tick, which comes 4 ms before A1's slot, and long before the next
+            // line, so the robot obeys it in a certain frame.
             uno.run_until_cycle(start + random.random_below(8) * CYCLES_PER_MS);
             uno.send(command(&mut random, &robot).as_bytes());
             uno.send(b"\n");

@@ -1,5 +1,5 @@
-//! The console's promise about its line: nothing is lost while the sender waits
-//! for answers, and what a flood loses is counted.
+//! Tests of the serial line: no byte is lost while the sender waits for answers,
+//! and the bytes that are lost in a flood are counted.
 
 use fastrand::Rng;
 use lizard_host_tests::FirmwareBench;
@@ -7,7 +7,7 @@ use simulated_uno::Fidelity;
 
 use crate::{Status, awake, end_flood, first_moving_gait, in_both, pose_at};
 
-/// Sends a line and requires an answer.
+/// Sends a line and asserts that the answer is `ok`.
 fn wait_for(bench: &mut FirmwareBench, line: &str) {
     let answer = bench.say(line);
     assert!(answer.starts_with("ok "), "{line}: {answer}");
@@ -37,7 +37,7 @@ fn a_sender_that_waits_for_answers_loses_nothing_at_full_line_rate() {
 
 #[test]
 fn a_whole_line_waits_in_the_buffer_while_an_answer_is_on_its_way() {
-    // The longest line right after a question with the longest answer, without waiting.
+    // Sends the longest line right after the question with the longest answer, without waiting.
     in_both(|fidelity| {
         let mut bench = awake(fidelity);
         let before = bench.lines().len();
@@ -89,7 +89,7 @@ fn bytes_lost_in_a_flood_are_counted() {
             (2.0 * answers..4.0 * answers).contains(&read),
             "{read} for {answers} answers"
         );
-        // After the end of a flood nothing of it remains.
+        // After a flood, none of its bytes remain in the buffer.
         wait_for(&mut bench, &first_moving_gait());
         assert_eq!(Status::of(&mut bench).number("rx_lost"), lost);
     });
@@ -113,8 +113,8 @@ fn a_burst_that_overruns_the_buffer_is_counted_to_the_byte() {
 
 #[test]
 fn of_an_overrun_the_bytes_that_are_kept_come_once_and_in_their_order() {
-    // The receiver has room for two bytes and the one being received. The answer shows
-    // which of the five digits are left.
+    // The receiver has room for two bytes and the byte being received. The answer shows
+    // which of the five digits were not lost.
     let byte = 1_400;
     let mut bench = awake(Fidelity::DataSheet);
     let (mut lost_before, mut overrun) = (0.0, 0);
@@ -151,7 +151,7 @@ fn any_bytes_at_all_get_at_most_one_answer_for_a_line() {
     let mut rng = Rng::with_seed(11);
     let mut bench = awake(Fidelity::DataSheet);
     for _ in 0..300 {
-        // Without backspace and delete, which remove bytes from the line.
+        // No backspace and no delete, which would remove bytes from the line.
         let bytes: Vec<u8> = (0..rng.u64(..80))
             .map(|_| rng.u8(..).max(32))
             .filter(|byte| *byte != 0x7f)

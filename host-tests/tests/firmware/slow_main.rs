@@ -1,5 +1,5 @@
-//! Main stopped at every instruction that shares data with an interrupt: at the hand-over of a
-//! frame, at the LED, in an answer, before it sleeps.
+//! Tests that stop main at every instruction that shares data with an interrupt: at the hand-over of a
+//! frame, at the LED, in an answer, and before it sleeps.
 
 use lizard_host::sim::frame::{FRAME, frames, servo_pins};
 use lizard_host_tests::{FirmwareBench, robot};
@@ -9,13 +9,13 @@ use crate::kept::{MS, assert_no_leap_in_a_gait, pulses};
 use crate::walk::{SLOT, Walk};
 use crate::{Status, awake, for_each, gaits, in_both, robot_after};
 
-/// More cycles than main takes, after the function that computes a frame, to hand the
-/// frame over and to set the LED. Three frames for each of these cycles are an odd
-/// number of the LED's beats of 32 frames, so a second sweep finds the LED lit where it
-/// was dark in the first.
+/// Upper bound of the cycles that main takes, after it has computed a frame, to hand
+/// the frame over and to set the LED. A sweep takes three frames for each of these
+/// cycles, an odd multiple of the 32 frames between two changes of the LED, so a
+/// second sweep finds the LED lit where it was dark in the first.
 const HAND_OVER: u64 = 608;
 
-/// Runs until main has computed its next frame, to the return of `Control::frame`.
+/// Runs until `Control::frame` returns to main with the next frame.
 fn run_to_hand_over(bench: &mut FirmwareBench) {
     let frame = bench.uno.image().function("Control::frame");
     let entry = frame.expect("it computes a frame").address as u32;
@@ -29,10 +29,10 @@ fn run_to_hand_over(bench: &mut FirmwareBench) {
 
 #[test]
 fn a_frame_is_played_whole_or_not_at_all_wherever_main_stops_in_the_hand_over() {
-    // Main stops until A1's pulse has begun: meanwhile the next frame is taken over, and
-    // the pin of A1, which may share its port with the LED, rises. This is done in every
-    // third frame, because a frame that comes too late is played next and also uses the
-    // tick after it.
+    // Main stops until A1's pulse has begun. Meanwhile the timer interrupt takes over the
+    // next frame, and the pin of A1, which may share its port with the LED, rises. This is
+    // done in every third frame, because a frame that comes too late is played at the next
+    // tick and thus affects two frames.
     in_both(|fidelity| {
         let mut walk = Walk::begin(fidelity);
         let start = walk.next_frame();
@@ -58,8 +58,8 @@ fn a_frame_is_played_whole_or_not_at_all_wherever_main_stops_in_the_hand_over() 
             assert!(is_next || is_old, "{} cycles in: {sent:?}", n / 3);
             next += usize::from(is_next);
         }
-        // Not all are repeated: at the end of the sweep main has handed over before it
-        // stops.
+        // Some frames are repeated, but not all: at the end of the sweep, main has handed
+        // the frame over before it stops.
         let repeated = frames.len() - next;
         assert!(
             (40..frames.len() / 3 - 40).contains(&repeated),
@@ -98,11 +98,11 @@ fn a_rest_instead_of_a_waiting_frame_ends_all_pulses_or_none() {
 
 #[test]
 fn an_answer_is_the_same_wherever_main_stops_in_writing_it() {
-    // The time of two bytes, in which the USART sends everything it holds.
+    // More than the time of two bytes, in which the USART sends everything that it holds.
     const STOP: u64 = 3_000;
     in_both(|fidelity| {
         let mut bench = awake(fidelity);
-        // Everything else has been printed before.
+        // From here on, the robot prints nothing but answers.
         assert_eq!(bench.say("stop"), "ok stop");
         for cycles in 0..4_500 {
             bench.send("stop");
@@ -150,7 +150,7 @@ fn ticks_that_main_misses_are_left_out_and_no_servo_leaps_for_them() {
         let before = Status::of(&mut walk.bench).number("frames");
         let cycle = walk.bench.uno.cycle();
         walk.bench.uno.take_edges();
-        // Shorter than the watchdog's timeout.
+        // Each stall is shorter than the watchdog's timeout.
         for _ in 0..20 {
             walk.bench.uno.stall_main(5 * FRAME);
             walk.bench.run_ms(300);
@@ -183,20 +183,21 @@ fn old_widths_repeat_while_main_stands_still() {
 
 #[test]
 fn no_pulse_leaps_after_a_stall_of_any_length_at_any_moment_of_any_gait() {
-    // The watchdog's two stages, less the frame in which it was fed last.
+    // Stalls in ms, by the watchdog's two stages less the frame in which it was fed last: shorter stalls than
+    // the first cause no reset, stalls from the second on always do.
     const HARMLESS: u64 = 105;
     const SURELY_RESET: u64 = 250;
     for_each(&gaits(), |gait| {
         let mut bench = robot_after(gait, Fidelity::DataSheet);
-        // Short stalls are tried at more moments, because only they end near the next
-        // tick.
+        // Short stalls are tried at more moments, because only short stalls end near the
+        // next tick.
         let lengths = (0..6).flat_map(|_| 1..=25).chain(1..=300);
         for (n, length) in lengths.enumerate() {
-            // Spread over the frame: 7 919 is a prime.
+            // Spreads the stalls evenly over the frame, since 7 919 is a prime.
             bench.uno.run_cycles(FRAME + n as u64 * 7_919 % FRAME);
             let resets = bench.uno.resets();
             bench.uno.stall_main(length * MS);
-            // Once its first stage has ended the pulses, the reset is certain.
+            // Once the watchdog's first stage has ended the pulses, the reset is certain.
             let wait = if length < HARMLESS { length } else { 350 };
             bench.uno.run_ms(wait + 60);
             let was_reset = bench.uno.resets() > resets;

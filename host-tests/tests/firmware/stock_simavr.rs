@@ -1,5 +1,5 @@
-//! Debian's own `simavr` runs the unchanged ELF and HEX files: both start, and a robot that was told
-//! to walk after power-on does so.
+//! Tests with Debian's own `simavr`, which runs the unchanged ELF and HEX files: both start, and a robot
+//! with a gait set by `boot` walks after power-on.
 
 use std::collections::HashMap;
 use std::fs::{self, File};
@@ -12,15 +12,15 @@ use lizard_core::numbers::units::CYCLES_PER_US;
 use lizard_core::virtual_board::Running;
 use lizard_host_tests::{FirmwareBench, robot};
 
-/// Time until simavr is ended. Simavr sleeps while the chip does, and a busy machine is slower.
+/// Time after which simavr is stopped. It runs in real time or, on a busy machine, slower.
 const TIMEOUT: Duration = Duration::from_secs(200);
 
-/// The gait that the robot walks: the first after `stand`.
+/// Returns the gait that the robot walks: the first after `stand`.
 fn gait() -> String {
     robot().gaits()[1].name().replace('-', " ")
 }
 
-/// Writes the EEPROM after `boot` and `save` as a HEX file.
+/// Writes an EEPROM whose saved settings start the gait at power-on, as a HEX file.
 fn write_eeprom(folder: &Path) {
     let mut running = Running::power_on(*robot().firmware());
     running.run(50);
@@ -59,8 +59,8 @@ fn objcopy(arguments: &[&str], folder: &Path) {
     assert!(done.expect("avr-objcopy").success(), "{arguments:?}");
 }
 
-/// Runs simavr until its output is complete and returns the output. SIGTERM ends it, so that it
-/// closes its files.
+/// Runs simavr until its output is complete and returns the output. Ends simavr with SIGTERM, so that
+/// it closes its files.
 fn run_simavr(arguments: &[&str], folder: &Path, is_complete: impl Fn(&str) -> bool) -> String {
     let output = folder.join("output.txt");
     let file = File::create(&output).expect("a folder");
@@ -83,7 +83,7 @@ fn run_simavr(arguments: &[&str], folder: &Path, is_complete: impl Fn(&str) -> b
     printed()
 }
 
-/// Tags of simavr's `avr_mcu_section.h`: a file of traces, and a pin to be traced.
+/// Returns the tags of simavr's `avr_mcu_section.h` for a trace file and for each pin to be traced.
 fn trace_tags(pins: [u8; 4]) -> Vec<u8> {
     let mut name = vec![12, 64];
     name.extend(b"pins.vcd");
@@ -103,7 +103,7 @@ fn trace_tags(pins: [u8; 4]) -> Vec<u8> {
     tags
 }
 
-/// Widths of each servo's pulses in us, from a file of traces in steps of 10 ns.
+/// Returns the widths of each servo's pulses, us, from a trace file with steps of 10 ns.
 fn widths(vcd: &str) -> HashMap<String, Vec<f64>> {
     let (mut names, mut rises, mut now) = (HashMap::new(), HashMap::new(), 0.0);
     let mut widths: HashMap<String, Vec<f64>> = HashMap::new();
@@ -131,7 +131,7 @@ fn the_elf_file_walks_in_debians_simavr() {
     let folder = folder.path();
     write_eeprom(folder);
     fs::copy(FirmwareBench::elf(), folder.join("lizard.elf")).expect("the firmware");
-    // The same file, with trace tags for four pins added to its own tags.
+    // `traced.elf` is the same file with trace tags for four pins added to its own tags.
     objcopy(
         &[
             "-O",
@@ -169,7 +169,7 @@ fn the_elf_file_walks_in_debians_simavr() {
             "eeprom.hex",
         ],
         folder,
-        // Some 20 bytes for each edge: three seconds until `boot`, and two cycles of a gait.
+        // Some 20 bytes for each edge, for the three seconds before the gait and for two cycles of it.
         |_| fs::metadata(folder.join("pins.vcd")).is_ok_and(|file| file.len() > 30_000),
     );
     assert!(

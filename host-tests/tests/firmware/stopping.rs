@@ -1,4 +1,4 @@
-//! `stop`, `rest` and waking at any moment, checked to the frame.
+//! Tests of `stop`, `rest` and waking, ordered at any moment and checked to the frame.
 
 use lizard_host::sim::frame::{FRAME, Frame, frames as frames_of, servo_pins};
 use lizard_host_tests::{FirmwareBench, robot};
@@ -14,8 +14,8 @@ use crate::{
 /// gait and frame are covered.
 const APART: u64 = 1_237_331;
 
-/// Sends a line at cycle `cycle` after a second of `gait`, and returns the bench and
-/// the cycle at which the last byte of the line has arrived.
+/// Runs `gait` for a second and `cycle` more cycles, sends a line, and returns the bench
+/// and the cycle at which the last byte of the line has arrived.
 fn interrupt(gait: &str, line: &str, cycle: u64, fidelity: Fidelity) -> (FirmwareBench, u64) {
     let mut bench = robot_after(gait, fidelity);
     bench.uno.run_cycles(cycle);
@@ -53,7 +53,7 @@ fn rest_ends_the_pulses_within_two_frames_and_cuts_none_short() {
         let mut bench = robot_after(&first_moving_gait(), fidelity);
         bench.uno.run_cycles(at);
         let first = bench.run_for_frames(1)[0];
-        // `edges` still holds this frame; the frames from now on follow it.
+        // The recorded edges still contain this frame; later edges are appended.
         bench.uno.run_cycles(at % FRAME);
         bench.send("rest");
         bench.run_ms(100);
@@ -104,7 +104,7 @@ fn servos_wake_one_after_another_a_tenth_of_a_second_apart() {
         })
     };
     in_both(|fidelity| {
-        // At power-on: frames are counted from A1's first pulse.
+        // After power-on, frames are counted from A1's first pulse.
         let mut bench = FirmwareBench::power_on(fidelity);
         bench.run_ms(1000);
         let pins = servo_pins(robot());
@@ -131,12 +131,12 @@ fn servos_wake_one_after_another_a_tenth_of_a_second_apart() {
     });
 }
 
-/// Sweeps from neutral of different sizes, the largest `size` deg.
+/// Returns a sweep from neutral for each servo, all of different sizes, the largest `size` deg.
 fn sweeps(size: f64) -> [f64; 4] {
     [-1.0, 0.25, 0.8, -0.6].map(|share| size * share)
 }
 
-/// The width at this many degrees from neutral, cycles.
+/// Returns the pulse width of a servo at this many degrees from neutral, cycles.
 fn width_at(servo: usize, sweep: f64) -> u64 {
     let servo = robot().servos()[servo];
     (servo.pulse(servo.neutral + sweep) * 16.0).round() as u64
@@ -146,7 +146,7 @@ fn width_at(servo: usize, sweep: f64) -> u64 {
 fn a_pose_is_reached_by_all_servos_together_and_not_too_fast() {
     in_both(|fidelity| {
         let mut bench = awake(fidelity);
-        // As far from neutral as the robot allows, a different angle for each servo.
+        // The pose is as far from neutral as the robot allows.
         let (size, _) = [24.0, 16.0, 8.0, 4.0, 2.0]
             .map(|size| (size, bench.say(&pose_at(sweeps(size)))))
             .into_iter()
@@ -159,10 +159,10 @@ fn a_pose_is_reached_by_all_servos_together_and_not_too_fast() {
         let goal: [u64; 4] = std::array::from_fn(|i| width_at(i, sweeps(size)[i]));
         let end = sent[149];
         for (end, goal) in end.into_iter().zip(goal) {
-            // Rounding to hundredths of a degree, then to steps of 1/65536 turn: a cycle or two each.
+            // Rounding to hundredths of a degree and rounding to steps of 1/65536 turn cost a cycle or two each.
             assert!(end.abs_diff(goal) <= 4, "{end}, not {goal}");
         }
-        // Along a straight line: each servo has covered the same share of its distance.
+        // The path is a straight line: at any time, each servo has covered the same share of its sweep.
         let sweep_of = |widths: [u64; 4]| -> [f64; 4] {
             std::array::from_fn(|i| widths[i] as f64 - neutral_widths()[i] as f64)
         };

@@ -1,4 +1,4 @@
-//! The chip's supply swept down and up: the measured voltage and the robot's reactions.
+//! Tests that sweep the chip's supply down and up, and check the measured voltage and the robot's reactions.
 
 use lizard_host_tests::{FirmwareBench, robot};
 use lizard_robot::Rail;
@@ -7,13 +7,13 @@ use simulated_uno::{Fidelity, Pin};
 use crate::kept::{flashes, pulses_in, widths_now};
 use crate::{Status, awake, first_moving_gait, robot_after};
 
-/// The largest error of a reading of the board's supply, V: a step of the converter at 5.5 V, and two decimals.
+/// The largest error of a printed board supply, V: one converter step at 5.5 V and the rounding to two decimals.
 const BOARD_ERROR_V: f64 = 0.04;
 
 /// The first pin that can measure a rail, by its Arduino number.
 const ANALOGUE: u8 = 14;
 
-/// The lines about the supply since line `from`, and the voltage in each.
+/// Returns the reaction and the voltage, V, in each note about the supply since line `from`.
 fn notes(bench: &mut FirmwareBench, from: usize) -> Vec<(String, f64)> {
     let lines = &bench.lines()[from..];
     let printed = lines
@@ -39,8 +39,8 @@ fn status_reports_the_supply_within_thirty_millivolts() {
     assert!(max_error <= 0.030, "{max_error} V");
 }
 
-/// Lowers a supply through its thresholds, V: at each, the robot must report its reaction, and the
-/// voltage to within `tolerance`.
+/// Lowers a supply through its three thresholds, V, and asserts that the robot reports its reaction at
+/// each threshold, and the voltage to within `tolerance`.
 fn assert_reacts_at(
     bench: &mut FirmwareBench,
     thresholds: [f64; 3],
@@ -195,7 +195,7 @@ fn a_short_dip_and_a_supply_that_wavers_change_little() {
         bench.run_ms(100);
     }
     assert!(notes(&mut bench, from).is_empty());
-    // Around the threshold, for half a minute.
+    // The supply alternates around the threshold for half a minute.
     let slow = robot().supplies().board[0] * 1000.0;
     for n in 0..100 {
         bench
@@ -207,7 +207,7 @@ fn a_short_dip_and_a_supply_that_wavers_change_little() {
     assert_eq!(printed.len(), 1, "{printed:?}");
 }
 
-/// Sets the voltage of the servos' rail, as the divider shows it to the pin.
+/// Sets the rail's pin to the voltage that the divider gives if the servos' rail has `volts`.
 fn set_rail(bench: &mut FirmwareBench, rail: &Rail, volts: f64) {
     let mv = (1000.0 * volts / rail.ratio).round() as u16;
     bench.uno.set_analog_mv(Pin::arduino(rail.pin), mv);
@@ -253,8 +253,8 @@ fn status_reports_the_servos_rail_if_robot_toml_names_its_pin() {
     }
 }
 
-/// The largest error of a rail's reading, V: a step of the converter either way for the
-/// rail and for the reference, and two decimals.
+/// Returns the largest error of a printed rail voltage, V: one converter step each for the
+/// rail and for the reference, and the rounding to two decimals.
 fn rail_tolerance(rail: &Rail, volts: f64) -> f64 {
     0.01 + rail.ratio * 5.0 / 1024.0 + volts / 225.0
 }

@@ -1,4 +1,4 @@
-//! The core on the AVR and on this machine: the same commands give the same bits.
+//! Test that the core computes the same widths and answers for the same commands on the AVR and on this machine.
 
 use crate::comparable_line;
 use lizard_host::sim::core_run;
@@ -9,7 +9,7 @@ use lizard_host::sim::supplies;
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::{Fidelity, State, Uno};
 
-/// Every kind of line, accepted or refused, one every `apart` ms, for ten minutes.
+/// Returns a script of ten minutes with every kind of line, accepted or refused, one every `apart` ms.
 fn script_of_all_lines(apart: u64) -> Script {
     let gaits = robot()
         .gaits()
@@ -35,8 +35,8 @@ fn script_of_all_lines(apart: u64) -> Script {
         ]
         .map(str::to_owned),
     );
-    // A stride without a common factor, so that every line follows every other
-    // in time; 7 ms against the ticks' 20, so that every phase of a frame is met.
+    // The stride of 11 has no common factor with the number of lines, so every line is sent. The
+    // interval has no common factor with a frame's 20 ms, so the lines fall on every phase of a frame.
     let steps = (0..600_000 / apart - 1)
         .map(|n| Step {
             ms: 1000 + n * apart,
@@ -50,7 +50,7 @@ fn script_of_all_lines(apart: u64) -> Script {
     }
 }
 
-/// Runs a script; also returns the lines that the robot sent.
+/// Runs a script and returns the recording and the lines that the robot sent.
 fn run(script: &Script, fidelity: Fidelity) -> (Recording, Vec<String>) {
     let mut uno = Uno::with_image(FirmwareBench::image(), fidelity);
     supplies::connect(&mut uno, robot());
@@ -94,8 +94,8 @@ fn ten_minutes_of_commands_give_the_same_widths_and_words_on_the_avr_and_here() 
         for (n, (measured, command)) in log.widths.iter().zip(&commands.widths).enumerate() {
             assert_eq!(measured, command, "{fidelity:?}, frame {n}");
         }
-        // The frame that a report describes also depends on the cycle in which the serial line
-        // has room for it.
+        // Reports are not compared, since the frame that a report describes also depends on the cycle
+        // in which the serial buffer has room for it.
         let is_report = |line: &str| line.starts_with("# t=");
         let here = commands.written.lines().filter(|line| !is_report(line));
         let here: Vec<&str> = here.collect();
@@ -106,9 +106,9 @@ fn ten_minutes_of_commands_give_the_same_widths_and_words_on_the_avr_and_here() 
         for (n, (here, there)) in here.iter().zip(&lines).enumerate() {
             assert_eq!(printed(here), printed(there), "{fidelity:?}, line {n}");
         }
-        // At the end of the run the line still holds something (a ring of 255 bytes,
-        // two in the transmitter, a part of a line), and the core has not run since
-        // the last whole frame.
+        // At the end of the run, the UNO has not sent everything yet (255 bytes in the ring buffer,
+        // two in the transmitter, a part of a line), and the core on this machine has not run since
+        // the last complete frame.
         let common = here.len().min(lines.len());
         let bytes = |line: &str| line.len() + 2;
         let there = lines[common..].iter().map(|line| bytes(line));

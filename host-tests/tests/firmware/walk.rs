@@ -1,4 +1,4 @@
-//! A robot in a gait, and the widths that it should send, for sweeps over every cycle.
+//! A robot in a gait, and the pulse widths that it should send, for tests that sweep an event over every cycle.
 
 use lizard_host::sim::frame::{FRAME, Frame, frames, servo_pins};
 use lizard_host_tests::{FirmwareBench, robot};
@@ -10,7 +10,7 @@ use crate::{awake, first_moving_gait};
 /// Cycles from one servo's pulse to the next one's.
 pub const SLOT: u64 = FRAME / 5;
 
-/// A robot that walks one gait.
+/// A robot that walks its first gait or stands, and the bytes and the first pulse from which its widths follow.
 pub struct Walk {
     pub bench: FirmwareBench,
     fidelity: Fidelity,
@@ -51,7 +51,7 @@ impl Walk {
         self.first + since.div_ceil(FRAME) * FRAME
     }
 
-    /// The frames from cycle `start` to now, and the widths that they should have.
+    /// Returns the frames from cycle `start` to now, and the widths that they should have.
     pub fn frames_since(&self, start: u64) -> Vec<(Frame, [u64; 4])> {
         let count = (self.bench.uno.cycle() + SLOT / 2 - start) / FRAME;
         let edges = self.bench.uno.edges();
@@ -60,7 +60,7 @@ impl Walk {
         sent.into_iter().zip(asked).collect()
     }
 
-    /// The widths that `count` frames from cycle `start` on should have.
+    /// Returns the widths that `count` frames from cycle `start` on should have.
     pub fn commands(&self, start: u64, count: u64) -> Vec<[u64; 4]> {
         let nothing = Frame {
             start,
@@ -81,19 +81,19 @@ impl Walk {
         self.bench.uno.run_until_cycle(cycle);
     }
 
-    /// The address of one of the firmware's variables, as in `pulses::LATE`.
+    /// Returns the address of one of the firmware's variables, such as `pulses::LATE`.
     pub fn address(&self, variable: &str) -> u16 {
         let address = self.bench.uno.image().variable(variable);
         address.unwrap_or_else(|| panic!("the firmware has no variable {variable}"))
     }
 
-    /// The value of one of the firmware's 16-bit variables.
+    /// Returns the value of one of the firmware's 16-bit variables.
     pub fn word(&self, variable: &str) -> u16 {
         let address = self.address(variable);
         u16::from_le_bytes([0, 1].map(|n| self.bench.uno.peek(address + n)))
     }
 
-    /// The number of edges that the firmware has counted as late.
+    /// Returns the number of edges that the firmware has counted as late.
     pub fn late(&self) -> u64 {
         self.word("pulses::LATE").into()
     }

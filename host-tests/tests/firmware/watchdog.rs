@@ -1,5 +1,5 @@
-//! A program that hangs is restarted without a wrong pulse, and every cause of a reset is reported
-//! correctly.
+//! Tests of resets: a program that hangs restarts without a wrong pulse, and every cause of a reset is
+//! reported correctly.
 
 use lizard_host_tests::FirmwareBench;
 use simulated_uno::{Fidelity, ResetCause};
@@ -11,11 +11,11 @@ use crate::{Status, awake, first_moving_gait, neutral_widths, pose_at, robot_aft
 const TCCR1B: u16 = 0x81;
 const TIMSK1: u16 = 0x6f;
 
-/// The longest time until the watchdog resets a program that hangs: twice 125 ms, and the frame
-/// in which it was fed last.
+/// The longest time until the watchdog resets a program that hangs: two stages of 125 ms each, and the
+/// frame in which the watchdog was fed last.
 const TIMEOUT_MS: u64 = 250 + 20;
 
-/// A robot that holds a pose other than the neutral one, and its widths.
+/// Returns a robot that holds a pose other than the neutral one, and the pulse widths of that pose.
 fn hold_pose() -> (FirmwareBench, [u64; 4]) {
     let mut bench = awake(Fidelity::DataSheet);
     bench.say(&pose_at([5.0, -4.0, 3.0, -2.0]));
@@ -25,7 +25,7 @@ fn hold_pose() -> (FirmwareBench, [u64; 4]) {
     (bench, widths)
 }
 
-/// Runs until the watchdog has reset the chip; returns the cycles until then.
+/// Runs until the watchdog resets the chip, ends the stall of main, and returns the cycles that passed.
 fn run_until_reset(bench: &mut FirmwareBench) -> u64 {
     let (start, resets) = (bench.uno.cycle(), bench.uno.resets());
     let limit = TIMEOUT_MS * MS;
@@ -35,7 +35,7 @@ fn run_until_reset(bench: &mut FirmwareBench) -> u64 {
             .run_until(limit, 1_000, |uno| uno.resets() > resets),
         "no reset"
     );
-    // The restarted program is not stalled.
+    // The restarted program must not be stalled.
     bench.uno.stall_main(0);
     bench.uno.cycle() - start
 }
@@ -44,7 +44,7 @@ fn run_until_reset(bench: &mut FirmwareBench) -> u64 {
 fn a_main_that_hangs_is_reset_and_the_robot_held_without_a_wrong_pulse() {
     let (mut bench, widths) = hold_pose();
     for n in 0..40u64 {
-        // At another time in the frame in each round.
+        // In each round, main stops at another time in the frame.
         bench.uno.run_cycles(n * 7_919);
         bench.uno.take_edges();
         bench.uno.stall_main(2_000 * MS);
@@ -115,7 +115,7 @@ fn a_hang_in_a_walk_ends_in_the_pose_of_the_last_frame_until_an_order() {
 fn a_stopped_timer_or_disabled_interrupts_are_detected() {
     for (register, value) in [(TCCR1B, 0), (TIMSK1, 0), (TIMSK1, 0x02), (TIMSK1, 0x04)] {
         let (mut bench, widths) = hold_pose();
-        // In the tick's slot, where no pin is high.
+        // Runs to the tick's slot, where no pin is high.
         bench.run_for_frames(1);
         let pins = bench.pins();
         assert!(pins.iter().all(|pin| !bench.uno.is_high(*pin)));
@@ -149,7 +149,7 @@ fn a_robot_that_works_is_never_reset() {
     assert_eq!(bench.uno.reset_events().len(), 1);
 }
 
-/// A board shortly after power-on, with or without a boot loader.
+/// Returns a board shortly after power-on, with or without a boot loader.
 fn fresh_board(has_boot_loader: bool) -> FirmwareBench {
     let mut bench = FirmwareBench::power_on(Fidelity::DataSheet);
     bench.uno.set_boot_loader(has_boot_loader);
@@ -177,7 +177,7 @@ fn every_cause_of_a_reset_is_reported_and_resets_are_counted() {
         bench.uno.run_ms(5);
         bench.uno.set_supply_mv(5_000.0);
         // The boot loader clears the chip's record of the cause, and the RAM has kept its
-        // contents, so the dip is taken for an external reset.
+        // contents, so the firmware takes the dip for an external reset.
         let dip = if has_boot_loader {
             "external"
         } else {
@@ -241,7 +241,7 @@ fn robot_neutral() -> [f64; 4] {
 #[test]
 fn a_hang_that_ends_by_itself_is_reset_like_any_other() {
     let (mut bench, widths) = hold_pose();
-    // From shorter than the watchdog's first stage of 125 ms to longer than both stages.
+    // The stalls range from shorter than the watchdog's first stage of 125 ms to longer than both stages.
     for ms in (90..300).step_by(10) {
         let resets = bench.uno.resets();
         bench.uno.stall_main(ms * MS);
@@ -263,7 +263,7 @@ fn a_hang_that_ends_by_itself_is_reset_like_any_other() {
 
 #[test]
 fn a_resting_robot_that_hangs_restarts_without_a_pulse() {
-    // The EEPROM holds the pose of the rest, or it is blank.
+    // The EEPROM holds the pose in which the robot rested, or it is blank.
     for blank in [false, true] {
         for ms in [140, 200, 400] {
             let (mut bench, _) = hold_pose();

@@ -1,11 +1,11 @@
-//! The numbers of each servo: neutral, gain, travel and pin.
+//! Tests of each servo's numbers in the core: neutral, gain, travel and pin.
 
 use lizard_core::numbers::units::Sweep;
 use lizard_host_tests::{Named, robots};
 
 use crate::truth::degrees;
 
-/// Steps of an angle in a degree.
+/// Steps of the core's angles in a degree.
 const STEPS: f64 = 65536.0 / 360.0;
 
 #[test]

@@ -1,4 +1,4 @@
-//! A robot at its console, every frame of which is checked against the rules for frames.
+//! A robot that the tests command through its console, and the checks of every frame that it sends.
 
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -17,22 +17,22 @@ use crate::truth::{Verdict, angles, is_safe, pose_within};
 /// Frames until all servos are awake.
 pub const WAKING: u32 = 20;
 
-/// The speed of one step of angle per frame, deg/s.
+/// The speed of one angle step per frame, deg/s.
 pub const STEP_PER_FRAME: f64 = 50.0 * 360.0 / 65536.0;
 
 /// Number of frames in which a motion accelerates to its pace, or brakes.
 const ACCELERATION_FRAMES: f64 = 7.0;
 
-/// Largest rounding error of a change of speed, in steps of angle per frame.
+/// Largest rounding error of a change of speed, in angle steps per frame.
 const ROUNDING: f64 = 4.0;
 
-/// The largest change of a servo's speed from one frame to the next, deg/s, except
-/// for `stop`, `rest` and the guard, which stop it at once.
+/// Returns the largest allowed change of a servo's speed from one frame to the next, deg/s. `stop`, `rest`
+/// and the guard are exempt, since they stop a servo at once.
 ///
 /// A point-to-point move changes speed most at the start and the end of the shortest move, of
 /// eight frames: by `6 distance / 8^2` per frame, at a mean speed of 2/3 of the slew limit. That
-/// is half the slew limit, also where one move ends and the next leads straight back. A gait has
-/// changes of speed of its own, and gaining or losing pace adds to them.
+/// is half the slew limit, also where one move ends and the next turns the servo straight back. A gait
+/// changes the servos' speeds by its waveforms, and gaining or losing pace adds to these changes.
 ///
 /// The value is computed once for each robot and cached by the hash of the robot's numbers.
 pub fn max_speed_change(robot: &Robot) -> f64 {
@@ -53,7 +53,7 @@ fn compute_max_speed_change(robot: &Robot) -> f64 {
     gaits.fold(moves, f64::max) + ROUNDING * STEP_PER_FRAME
 }
 
-/// The largest speed of a gait at full pace, and the largest change of speed from a
+/// Returns the largest servo speed in a gait at full pace, and the largest change of that speed from one
 /// frame to the next, deg/s.
 fn fastest(robot: &Robot, id: GaitId) -> (f64, f64) {
     let firmware = robot.firmware();
@@ -75,8 +75,8 @@ fn fastest(robot: &Robot, id: GaitId) -> (f64, f64) {
     (speed * STEP_PER_FRAME, change * STEP_PER_FRAME)
 }
 
-/// Number of frames within which any command ends: waking, braking, the longest move at the
-/// slew limit, gaining pace.
+/// Returns an upper bound of the frames that any command takes: for waking, braking, the longest move at the
+/// slew limit, and gaining pace.
 pub fn settling_frames(robot: &Robot) -> u32 {
     let travels = robot.firmware().calibration();
     let ranges = travels.map(|servo| f64::from(servo.max.0) - f64::from(servo.min.0));
@@ -85,7 +85,7 @@ pub fn settling_frames(robot: &Robot) -> u32 {
     WAKING + 30 + (1.05 * frames) as u32
 }
 
-/// A robot whose frames are each checked when they are sent.
+/// A robot each frame of which is checked when it is sent.
 pub struct Walker<'a> {
     name: &'a str,
     robot: &'a Robot,
@@ -100,7 +100,7 @@ pub struct Walker<'a> {
 }
 
 impl<'a> Walker<'a> {
-    /// A robot after power-on, whose banner has been read.
+    /// Powers a robot on and discards its banner.
     pub fn new(Named { name, robot }: &'a Named) -> Self {
         let mut walker = Self {
             name,
@@ -115,7 +115,7 @@ impl<'a> Walker<'a> {
         walker
     }
 
-    /// A robot that is awake and stands.
+    /// Returns a robot that is awake and stands.
     pub fn standing(named: &'a Named) -> Self {
         let mut walker = Self::new(named);
         walker.run(WAKING + 1);
@@ -157,8 +157,8 @@ impl<'a> Walker<'a> {
         self.motion().hazard().is_none()
     }
 
-    /// The command for a pose. Its hundredths of a degree select the pose's step of 1/65536 turn, or
-    /// the neighbour of that step.
+    /// Returns the command for a pose. The console's hundredths of a degree select the pose's angle step of
+    /// 1/65536 turn or a neighbour of that step.
     pub fn pose_command(&self, pose: &Pose) -> String {
         pose_command(angles(self.robot.firmware(), pose))
     }
@@ -170,7 +170,7 @@ impl<'a> Walker<'a> {
         }
     }
 
-    /// Runs a frame and checks it against all rules.
+    /// Runs a frame and checks its safety, its pulses and the servos' speeds.
     pub fn frame(&mut self) -> Pulses {
         let (name, robot) = (self.name, self.robot);
         let before = self.pose();
@@ -221,7 +221,7 @@ impl<'a> Walker<'a> {
         pulses
     }
 
-    /// Checks that the pulses are those of the pose by robot.toml, within each servo's travel.
+    /// Checks that the pulses are those that robot.toml gives for the pose, within each servo's travel.
     fn check_pulses(&self, pose: &Pose, pulses: Pulses) {
         for (n, (servo, width)) in self.robot.servos().iter().zip(pulses.0).enumerate() {
             if width.0 == 0 {
@@ -250,18 +250,18 @@ impl<'a> Walker<'a> {
     }
 }
 
-/// The command for chassis angles, deg.
+/// Returns the command for a pose by its angles in the chassis frame, deg.
 pub fn pose_command(angles: [f64; 4]) -> String {
     let [a1, a2, a3, a4] = angles;
     format!("pose {a1:.2} {a2:.2} {a3:.2} {a4:.2}")
 }
 
-/// The command that begins a gait.
+/// Returns the command that starts a gait.
 pub fn gait_command(gait: &CheckedGait) -> String {
     gait.name().replace('-', " ")
 }
 
-/// Any command that moves a robot or stops it.
+/// Returns a random command that moves a robot, stops it or sets its speed.
 pub fn any_command(rng: &mut Rng, robot: &Robot) -> String {
     let pose = |rng: &mut Rng, share: f64| {
         let firmware = robot.firmware();
@@ -279,7 +279,7 @@ pub fn any_command(rng: &mut Rng, robot: &Robot) -> String {
     }
 }
 
-/// The robot's activity once a command is complete.
+/// Returns the robot's activity once a command is complete; `None` if the command is none that selects an activity.
 pub fn final_activity(robot: &Robot, command: &str) -> Option<Activity> {
     let gait = robot
         .gaits()

@@ -1,5 +1,5 @@
-//! The gaits of every robot as its core reads them, against the gaits in floating
-//! point and against what robot.toml says that they do.
+//! Tests of the gaits of every robot in the core, compared with the gaits in floating
+//! point and with their description in robot.toml.
 
 use lizard_core::numbers::gaits::{Gait, GaitId};
 use lizard_core::numbers::pose::Pose;
@@ -12,14 +12,14 @@ use lizard_robot::{CheckedGait, Robot, STEPS_PER_DEGREE, Waveform};
 use crate::frames::gait_command;
 use crate::truth::is_safe;
 
-/// The number of phases that the wave tables distinguish.
+/// Number of phases in a cycle that the wave tables distinguish.
 const PHASES: u32 = 65_536;
 /// The pace of a gait at full speed, in 1/1024.
 pub const FULL_PACE: u16 = 1024;
-/// The largest error of a table that the project promises, deg.
+/// Largest error of the wave tables that the project promises, deg.
 const TABLE_ERROR: f64 = 0.50;
 
-/// Every gait of every robot, with its place in the core.
+/// Returns every gait of every robot, in floating point and as the core has it.
 pub fn gaits() -> impl Iterator<Item = (&'static Named, &'static CheckedGait, Gait)> {
     robots().iter().flat_map(|named| {
         let ids = GaitId::all(named.robot.gaits().len());
@@ -28,19 +28,19 @@ pub fn gaits() -> impl Iterator<Item = (&'static Named, &'static CheckedGait, Ga
     })
 }
 
-/// The gait of a robot by its name, as the core has it.
+/// Returns the gait of this name as the core has it; `None` if the robot has no such gait.
 fn gait_named(robot: &Robot, name: &str) -> Option<Gait> {
     let index = robot.gait(name)?.index();
     let id = GaitId::all(robot.gaits().len()).nth(index)?;
     Some(robot.firmware().gait(id))
 }
 
-/// One phase of the core for each that the tables distinguish.
+/// Returns one phase of the core for each of [`PHASES`].
 fn phases() -> impl Iterator<Item = u32> {
     (0..PHASES).map(|phase| phase << 8)
 }
 
-/// The mirrored pose: left and right exchanged, every sweep negated.
+/// Returns the mirrored pose: left and right exchanged, every sweep negated.
 fn mirror(pose: Pose) -> Pose {
     Pose(OPPOSITE.map(|servo| Sweep(-pose.0[servo].0)))
 }
@@ -61,7 +61,7 @@ fn the_core_has_the_gaits_of_the_file_in_its_order() {
 fn tables_are_within_the_promised_error_of_every_gait_and_safe_at_every_phase() {
     let mut worst = 0.0f64;
     for (n, (Named { name, robot }, float, gait)) in gaits().enumerate() {
-        // For random robots only every 13th phase, with another first phase for each gait.
+        // Of random robots only every 13th phase is tested, with another first phase for each gait.
         let (first, step) = if name.contains("random") {
             (n % 13, 13)
         } else {
@@ -107,14 +107,14 @@ fn a_leg_of_a_wave_pushes_back_for_its_duty_and_returns_in_the_rest() {
                 continue;
             }
             legs += 1;
-            // The leg's angle, forward positive, at a share of the cycle after the stroke's start.
+            // Returns the leg's angle, forward positive, at a share of the cycle after the stroke's start.
             let foot = |after: f64| {
                 let phase = (stride.start + after).rem_euclid(1.0) * f64::from(CYCLE);
                 let pose = gait.pose(robot.firmware().waves(), phase as u32);
                 FORWARD[servo] * f64::from(pose.0[servo].0) / STEPS_PER_DEGREE
             };
             let whom = format!("{name}: {} {}", float.name(), LEGS[servo]);
-            // A stroke starts in front, moves at constant speed to as far behind, and returns.
+            // A stroke starts in front, moves at constant speed to the same angle behind, and returns.
             let front = foot(0.0);
             let share = front / stride.amplitude;
             assert!((0.5..1.01).contains(&share), "{whom} begins at {front} deg");
@@ -153,7 +153,7 @@ fn the_legs_of_a_held_gait_return_one_after_another_in_its_order() {
                 let pose = gait.pose(robot.firmware().waves(), (phase * f64::from(CYCLE)) as u32);
                 FORWARD[servo] * f64::from(pose.0[servo].0) / STEPS_PER_DEGREE
             };
-            // A fifth of the cycle is the common stroke, then each leg's return takes a fifth.
+            // The common stroke takes a fifth of the cycle, then the return of each leg takes a fifth.
             let start = 0.2 * (1.0 + turn as f64);
             for (phase, share) in [
                 (0.2, -1.0),
@@ -175,7 +175,7 @@ fn the_legs_of_a_held_gait_return_one_after_another_in_its_order() {
 
 #[test]
 fn a_path_moves_only_its_own_end_around_its_centre() {
-    // Random robots look and wag around the position of the end point in the neutral pose.
+    // In the gaits of random robots, the paths of `look` and `wag` are centred on the end point's neutral position.
     let mut paths = 0;
     for Named { name, robot } in robots()
         .iter()
@@ -278,7 +278,7 @@ fn a_mirrored_gait_is_the_other_one_with_left_and_right_exchanged() {
 fn the_wrap_of_the_phase_is_as_smooth_as_the_rest_of_the_cycle() {
     for (Named { name, robot }, float, gait) in gaits() {
         let pose = |phase: u32| gait.pose(robot.firmware().waves(), phase % CYCLE);
-        // The longest distance between two neighbours, including that from the last phase to 0.
+        // Returns the largest turn of a servo from a phase to the next, also from the last phase to 0.
         let step_size = |phase: u32| pose(phase).largest_turn_to(&pose(phase + (1 << 8)));
         let longest = phases().step_by(7).map(step_size).max();
         let around = phases().skip(PHASES as usize - 4).map(step_size).max();

@@ -1,5 +1,5 @@
-//! The core's pulses, converted back to angles and walked on the floor of the contact model, must
-//! move the robot as the gait in floating point does.
+//! Tests of the travel that the core's pulses cause: converted back to angles and run through the contact
+//! model, they must move the robot as the gait in floating point does.
 
 use lizard_core::numbers::pose::Pulses;
 use lizard_host_tests::{Named, paper, robots};
@@ -7,7 +7,7 @@ use lizard_robot::{CheckedGait, Robot, Travel};
 
 use crate::frames::{Walker, gait_command, settling_frames};
 
-/// Servo angles in the chassis frame, deg, from widths in cycles of 62.5 ns.
+/// Converts pulse widths in cycles of 62.5 ns to servo angles in the chassis frame, deg.
 fn angles(robot: &Robot, pulses: Pulses) -> [f64; 4] {
     std::array::from_fn(|n| {
         let servo = &robot.servos()[n];
@@ -15,8 +15,8 @@ fn angles(robot: &Robot, pulses: Pulses) -> [f64; 4] {
     })
 }
 
-/// The travel of one cycle, computed from the pulses that the core sends for a gait at a speed in
-/// percent. The cycle begins where the gait's phase is nearest to 0. `None` if the guard stops the
+/// Returns the robot's travel in one cycle, computed from the pulses that the core sends for a gait at a
+/// speed in percent. The cycle begins where the gait's phase is nearest to 0. `None` if the guard stops the
 /// robot on its path to the gait's first pose.
 fn travel(named: &Named, gait: &CheckedGait, percent: f64) -> Option<Travel> {
     let robot = &named.robot;
@@ -28,7 +28,7 @@ fn travel(named: &Named, gait: &CheckedGait, percent: f64) -> Option<Travel> {
         return None;
     }
     let frames = gait.period() * 50.0 * 100.0 / percent;
-    // The frame with the phase nearest to 0, going up or down.
+    // The distance of the phase from 0, since the phase of a reversed gait falls.
     let from_zero = |walker: &Walker| {
         let phase = i64::from(walker.motion().phase());
         phase.min((1 << 24) - phase)
@@ -52,8 +52,8 @@ fn travel(named: &Named, gait: &CheckedGait, percent: f64) -> Option<Travel> {
     Some(robot.travel(path))
 }
 
-/// Asserts that a travel is the expected one where that is known: forward to within `largest` mm or a
-/// hundredth, the turn to within 0.2 deg.
+/// Asserts that a travel is the expected one: forward to within `largest` mm or 1 %, the turn to within
+/// 0.2 deg. An expected value of `None` is not compared.
 fn check(name: &str, travel: Travel, largest: f64, forward: Option<f64>, turn: Option<f64>) {
     println!(
         "{name}: {:+.2} mm, {:+.2} deg, expected {forward:?} {turn:?}",
@@ -81,7 +81,7 @@ fn the_pulses_of_every_gait_lead_as_far_as_the_gait_in_floating_point() {
     for named in &robots()[..robots().len() - 5] {
         for gait in named.robot.gaits() {
             for percent in [100.0, 20.0] {
-                // The robots that are not random suffice for the lower pace.
+                // At the lower speed, random robots are left out.
                 if percent < 100.0 && named.name.starts_with("random") {
                     continue;
                 }
@@ -91,7 +91,7 @@ fn the_pulses_of_every_gait_lead_as_far_as_the_gait_in_floating_point() {
                 seen += 1;
                 let expected = gait.predict(&named.robot.ground().rigid());
                 let name = format!("{}: {} at {percent} %", named.name, gait.name());
-                // Without symmetry, a tenth of a degree may decide which foot holds.
+                // On a robot without symmetry, a tenth of a degree may decide which foot sticks.
                 let max = 0.01 * named.robot.lizard().links.l10;
                 check(&name, travel, max, expected.forward, expected.turn);
             }

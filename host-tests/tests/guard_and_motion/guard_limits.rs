@@ -1,4 +1,4 @@
-//! The guard's limits, each to the last bit.
+//! The guard's limits, each checked to the last bit.
 
 use lizard_core::guard::clearance::Clearance;
 use lizard_core::guard::hazard::Hazard;
@@ -19,7 +19,7 @@ fn limits(robot: &Robot) -> [f64; 10] {
     })
 }
 
-/// The smallest Q15 number that is not below a sine.
+/// A sine rounded up to Q15.
 fn ceil_q15(limit: f64) -> i16 {
     (limit * 32768.0 - 1e-6).ceil() as i16
 }

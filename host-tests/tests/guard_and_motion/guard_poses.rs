@@ -1,4 +1,4 @@
-//! The guard's decisions on poses anywhere in the servos' travel.
+//! Tests of the guard's decisions on poses anywhere in the servos' travel.
 
 use fastrand::Rng;
 use lizard_core::guard::clearance::Clearance;
@@ -16,12 +16,12 @@ use crate::truth::{
     pose_within, sine,
 };
 
-/// Poses of each robot.
+/// Number of poses tested on each robot.
 const POSES: usize = 40_000;
-/// Pairs of neighbouring poses of each robot with a limit between them.
+/// Number of pairs of neighbouring poses with a limit between them, tested on each robot.
 const PAIRS: usize = 1500;
 
-/// The results for many poses of one robot.
+/// The guard's errors and decisions for many poses of one robot. A band is the error that the guard may have.
 #[derive(Default)]
 struct Findings {
     type2: Spread,
@@ -33,8 +33,8 @@ struct Findings {
     in_bands: [f64; 10],
     safe: usize,
     refused: usize,
-    /// Poses where the guard and floating point decide differently, and the largest distance of one
-    /// of them from a limit, in bands.
+    /// Poses where the guard and floating point decide differently. `farthest` is the largest distance of such
+    /// a pose from a limit, in bands.
     differ: usize,
     farthest: f64,
     /// The number of times that each of the twelve conditions was named.
@@ -84,20 +84,20 @@ impl Findings {
         let Some(named) = named else {
             return;
         };
-        // The condition that is named is broken, and none before it.
+        // The named condition is broken, and no condition that the guard checks earlier.
         assert!(clear_by[named] <= 1.0, "{pose:?}: {hazard:?}, {truth:?}");
         let earlier = clear_by[..named].iter().all(|by| *by >= -1.0);
         assert!(earlier, "{pose:?}: {hazard:?} comes too early, {truth:?}");
     }
 
-    /// Compares every value with the truth.
+    /// Compares the guard's margins and strokes with those in floating point.
     fn compare(&mut self, robot: &Robot, core: &Clearance, truth: &Truth) {
         for (index, (value, expected)) in core.margins.iter().zip(truth.margins).enumerate() {
             let end = ENDS.get(index).copied();
             if let Some(end) = end
                 && (truth.margins[end] < MIN_TYPE2 || truth.is_at_crossing(end))
             {
-                // Here the guard only has to detect the small type-2 margin.
+                // So near a type-2 singularity, the guard only has to detect that the margin is small.
                 let max = MIN_TYPE2 + truth.bands[end];
                 assert!(
                     truth.is_at_crossing(end) || sine(core.margins[end]) < max,
@@ -154,7 +154,7 @@ impl Findings {
     }
 }
 
-/// The index of the condition that a hazard names, among the twelve.
+/// Returns the index of the condition that a hazard names, among the ten margins and two strokes.
 fn index_of(hazard: Hazard) -> usize {
     match hazard {
         Hazard::Margin { margin, .. } => {
@@ -166,7 +166,7 @@ fn index_of(hazard: Hazard) -> usize {
     }
 }
 
-/// Random poses in the full travel, and nearer to neutral, where safe poses border on unsafe ones.
+/// Returns random poses in the full travel and nearer to neutral, where the border of the safe poses lies.
 fn poses(rng: &mut Rng, robot: &Robot) -> impl Iterator<Item = Pose> {
     let calibration = robot.firmware().calibration();
     let shares = [1.0, 0.7, 0.4, 0.2];
@@ -208,8 +208,8 @@ fn of_every_robot_the_guards_decision_changes_at_the_limit_of_floating_point() {
     }
 }
 
-/// Two neighbouring poses on the path from neutral to an unsafe pose, the first of them safe
-/// and the second not.
+/// Returns two neighbouring poses on the path from neutral to an unsafe pose: a safe one, then an unsafe
+/// one.
 fn straddling_poses(robot: &Robot, far: Pose) -> [Pose; 2] {
     let at = |share: u32| {
         Pose(
@@ -275,7 +275,7 @@ fn the_smallest_margin_is_the_one_of_kinematics() {
 
 #[test]
 fn the_guard_overflows_at_no_pose() {
-    // Also poses that no servo reaches: the arithmetic must not overflow in any.
+    // The poses include those that no servo reaches: the arithmetic must not overflow for any pose.
     for (n, Named { robot, .. }) in robots().iter().enumerate() {
         let mut rng = rng(500 + n as u64);
         let mut findings = Findings::default();

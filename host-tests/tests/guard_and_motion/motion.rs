@@ -1,4 +1,4 @@
-//! Transitions from any motion to any other, for every robot: every frame keeps the limits, and
+//! Tests of transitions from any motion to any other, for every robot: every frame keeps the limits, and
 //! every command completes.
 
 use lizard_core::motion::Activity;
@@ -65,7 +65,7 @@ fn every_command_comes_to_its_end_or_the_guard_says_why_not() {
                 Some(expected) if answer.starts_with("ok") => {
                     assert_eq!(activity, expected, "{name}: {last}")
                 }
-                // After a speed, or a pose that was refused, the gait goes on.
+                // After a `speed` or a refused pose, the robot still stands or walks.
                 _ => assert!(matches!(activity, Activity::Gait(_)), "{name}: {last}"),
             }
             if let Activity::Gait(id) = activity {
@@ -173,7 +173,7 @@ fn servos_wake_one_after_another_where_they_were_left() {
                     assert_eq!(width.0 > 0, awake_since[servo] > 0, "awake for good");
                 }
             }
-            // A tenth of a second between them.
+            // The servos wake a tenth of a second apart.
             assert_eq!(awake_since, [5, 10, 15, 20], "{}", named.name);
             walker.run(settling_frames(&named.robot));
         }

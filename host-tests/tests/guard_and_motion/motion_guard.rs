@@ -1,4 +1,4 @@
-//! Moves between two safe poses whose path leads through an unsafe one.
+//! Tests of moves between two safe poses with an unsafe pose on the path.
 
 use fastrand::Rng;
 use lizard_core::guard::clearance::Clearance;
@@ -11,16 +11,16 @@ use lizard_robot::{CoreRobot, Robot};
 use crate::frames::{Walker, gait_command, settling_frames};
 use crate::truth::{Verdict, angles, is_safe, pose_within};
 
-/// Number of tries for each robot; some robots have no such paths.
+/// Number of random pairs tried for each robot, since some robots have no unsafe path between safe poses.
 const TRIES: usize = 6000;
-/// Number of paths followed for each robot.
+/// Largest number of unsafe paths that are followed for each robot.
 const PATHS: usize = 12;
 
-/// Pairs of safe poses whose straight connection is unsafe, by floating point.
+/// Returns up to [`PATHS`] pairs of safe poses whose straight path is unsafe by floating point.
 fn crossings(rng: &mut Rng, robot: &Robot) -> Vec<[Pose; 2]> {
     let calibration = robot.firmware().calibration();
     let edge = |rng: &mut Rng| {
-        // Two cranks of one end or of one side near a limit, the others at rest.
+        // Two cranks of one five-bar or of one side near a limit, the others at neutral.
         let [a, b] = [[0, 1], [2, 3], [0, 3], [1, 2]][rng.usize(..4)];
         let any = pose_within(rng, &calibration, 1.0);
         let mut pose = Pose::NEUTRAL;
@@ -78,7 +78,7 @@ fn the_last_safe_pose_is_held_and_the_reason_is_reported_once() {
             }
             let from = walker.pose();
             walker.run(settling_frames(robot)); // checks that every frame is safe
-            // A step of a fast move may leap over a narrow hazard.
+            // A fast move may pass a narrow unsafe stretch between two frames.
             let Some(hazard) = walker.motion().hazard() else {
                 assert!(walker.pose().largest_turn_to(&to) <= 1, "{name}");
                 continue;
@@ -91,7 +91,7 @@ fn the_last_safe_pose_is_held_and_the_reason_is_reported_once() {
                 printed[0].starts_with("# held in the last safe pose: "),
                 "{printed:?}"
             );
-            // The cause is on the rest of the path.
+            // The cause lies on the rest of the path.
             assert!(
                 lies_ahead(robot.firmware(), from, to, walker.pose(), hazard),
                 "{name}: {hazard:?}"
@@ -101,7 +101,7 @@ fn the_last_safe_pose_is_held_and_the_reason_is_reported_once() {
             assert_eq!(walker.pose(), pose, "{name}");
             assert!(walker.read().is_empty(), "{name}: told once");
             assert!(walker.say("status").contains(" guard=held "), "{name}");
-            // From there the robot can move back, unless the guard stops it again.
+            // The robot can move back, unless the guard stops it again.
             assert!(
                 walker.move_to(&from) || walker.motion().hazard().is_some(),
                 "{name}"
@@ -150,7 +150,7 @@ fn a_gait_that_is_under_way_never_meets_the_guard() {
         for gait in named.robot.gaits() {
             let mut walker = Walker::standing(named);
             walker.expect_ok(&gait_command(gait));
-            // The path to its first pose may lead through an unsafe one.
+            // The path to the gait's first pose may contain an unsafe pose.
             walker.run(settling_frames(&named.robot));
             if walker.motion().hazard().is_some() {
                 println!("{}: the way to {} is barred", named.name, gait.name());

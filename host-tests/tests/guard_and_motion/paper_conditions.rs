@@ -1,5 +1,5 @@
-//! Reasons not to build the guard on the paper's printed conditions: sin(theta2 + theta3) = 0, the
-//! same for the tail, and sin(2 theta11) = 0.
+//! Tests that show why the guard does not use the singularity conditions printed in the paper:
+//! sin(theta2 + theta3) = 0, sin(theta6 + theta7) = 0 for the tail, and sin(2 theta11) = 0.
 
 use lizard_core::guard::clearance::Clearance;
 use lizard_core::guard::hazard::{Hazard, Margin};
@@ -11,8 +11,8 @@ use lizard_host_tests::paper;
 
 use crate::truth::{angles, is_safe};
 
-/// The head's crank angles where the crank tips meet, deg: the one place where
-/// the couplers fold and the head swings free.
+/// The head's crank angles where the two crank tips coincide, deg. Only there do the
+/// couplers fold onto each other, and the head swings freely.
 const MEET: [f64; 2] = [70.52878, 109.47122];
 
 /// A guard built on the printed conditions.
@@ -104,7 +104,7 @@ fn the_papers_condition_misses_the_real_singularity_and_the_guard_does_not() {
     }
     println!("a degree beside the singularity, |sin(theta2 + theta3)| is up to {best:.3}");
     assert!(best > 0.95);
-    // Exactly at the singularity, too, and at its mirror image in the tail.
+    // The guard also refuses the pose exactly at the singularity, and its mirror image in the tail.
     let head = head_at(MEET[0], MEET[1]);
     assert_eq!(refused_margin(&head), Some(Margin::Type2(End::Head)));
     let Pose([a1, a2, ..]) = head;
@@ -112,7 +112,7 @@ fn the_papers_condition_misses_the_real_singularity_and_the_guard_does_not() {
     assert_eq!(refused_margin(&tail), Some(Margin::Type2(End::Tail)));
 }
 
-/// The margin that the guard finds too small.
+/// Returns the margin that the guard finds too small; `None` if it finds none.
 fn refused_margin(pose: &Pose) -> Option<Margin> {
     let firmware = paper().firmware();
     match Clearance::of(firmware, pose).hazard(firmware) {

@@ -14,11 +14,11 @@ use lizard_host::prove::STEPS_BAND;
 use lizard_kinematics::{Check, Infeasible, Limits, Part};
 use lizard_robot::{CoreRobot, Robot};
 
-/// Largest error of the guard's arithmetic in a margin, a sine; the rounding of lengths adds to
-/// it.
+/// Largest error of a margin, a sine, from the guard's arithmetic. The rounding of lengths adds to this
+/// error.
 pub const MARGIN_BAND: f64 = 0.002;
-/// The smallest type-2 limit that robot.toml may set. Of a smaller margin the guard only has to
-/// detect that it is smaller.
+/// The smallest type-2 limit that robot.toml may set. If a margin is smaller, the guard only has to
+/// detect that.
 pub const MIN_TYPE2: f64 = 0.1;
 
 /// The ten margins in the order in which the guard checks them.
@@ -35,33 +35,33 @@ pub const MARGINS: [Margin; 10] = [
     Margin::Leg(Servo::A4),
 ];
 
-/// The end of each of the six margins that are not a leg's: 0 is the head, 1 the tail.
+/// The five-bar of each of the six margins that are not a leg's: 0 is the head, 1 the tail.
 pub const ENDS: [usize; 6] = [0, 1, 0, 0, 1, 1];
 
-/// An angle of the core in degrees, 0..360.
+/// Converts an angle of the core to degrees, 0..360.
 pub fn degrees(angle: Angle) -> f64 {
     f64::from(angle.0) * 360.0 / 65536.0
 }
 
-/// A margin of the core as a sine.
+/// Converts a margin of the core to a sine.
 pub fn sine(margin: Sine) -> f64 {
     f64::from(margin.0) / 32768.0
 }
 
-/// Steps of a length per millimetre.
+/// Returns the core's length steps per millimetre.
 pub fn per_mm(scale: Scale) -> f64 {
     f64::from(1u32 << scale.bits)
 }
 
-/// The chassis angles of a pose in degrees, exactly as the core represents them.
+/// Returns the chassis angles of a pose in degrees, exactly as the core represents them.
 pub fn angles(firmware: &CoreRobot, pose: &Pose) -> [f64; 4] {
     pose.angles(&firmware.neutral()).map(degrees)
 }
 
-/// The exact values of every safety condition at a pose.
+/// The values of every safety condition at a pose, computed in floating point.
 #[derive(Clone, Copy, Debug)]
 pub struct Truth {
-    /// Sines, in the order of [`MARGINS`]. Type-2 with the sign of K2: negative for
+    /// Sines, in the order of [`MARGINS`]. The type-2 margins have the sign of K2: negative for
     /// crossed crank tips.
     pub margins: [f64; 10],
     /// Slider travel from nominal, mm.
@@ -69,11 +69,11 @@ pub struct Truth {
     /// K2 of head and tail, mm.
     pub k2: [f64; 2],
     /// True for each condition that is broken according to lizard-kinematics. Crossed crank tips
-    /// count as type-2.
+    /// count as a broken type-2 margin.
     pub broken: [bool; 12],
     limits: Limits,
-    /// The guard's largest errors: of each margin, then in mm of the left and the right stroke and
-    /// of K2 of head and tail.
+    /// The largest error that the guard may have in each condition, its band: ten margins, then in mm the left
+    /// stroke, the right stroke, and K2 of head and tail.
     pub bands: [f64; 14],
 }
 
@@ -92,7 +92,7 @@ impl Truth {
     /// Computes every condition at chassis angles in degrees.
     ///
     /// # Errors
-    /// Fails for a loop that does not close.
+    /// Fails if a five-bar or a side does not close.
     pub fn of(robot: &Robot, angles: [f64; 4]) -> Result<Self, Infeasible> {
         let solution = robot.lizard().solve(&angles.into())?;
         let across = [solution.head.gap.x, solution.tail.gap.x];
@@ -138,8 +138,8 @@ impl Truth {
         })
     }
 
-    /// The distance of each margin and then each stroke from its limit, in bands, positive where
-    /// safe. As in the guard, crossed crank tips fail type-2.
+    /// Returns the distance of each margin, then of each stroke, from its limit, in bands, positive where
+    /// safe. As in the guard, crossed crank tips break the type-2 limit.
     pub fn clear_by(&self) -> [f64; 12] {
         let Limits {
             type2,
@@ -162,13 +162,13 @@ impl Truth {
         })
     }
 
-    /// True if K2 of an end, by its index, is too near to 0 for a sign.
+    /// True if K2 of the five-bar with this index is so near to 0 that the guard may get its sign wrong.
     pub fn is_at_crossing(&self, end: usize) -> bool {
         self.k2[end].abs() <= self.bands[12 + end]
     }
 }
 
-/// The index of a condition among the twelve: ten margins, two strokes.
+/// Returns the index of a condition among the twelve: ten margins, two strokes.
 fn index_of(check: Check) -> usize {
     let among = |checks: &[Check]| checks.iter().position(|known| *known == check);
     let kinds: [(usize, &[Check]); 5] = [
@@ -184,9 +184,10 @@ fn index_of(check: Check) -> usize {
     indices.next().expect("every condition is of one kind")
 }
 
-/// The largest errors of an end's margins: type-2, type-1 left and right. Each is the error of the
-/// guard's arithmetic and of the rounding of lengths: `step` mm of the distance `tips` of the crank
-/// tips, mm. Near a singularity, where `type2` is small, such a step turns the couplers a lot.
+/// Returns the largest errors of a five-bar's margins: type-2, left type-1 and right type-1. Each is the sum
+/// of the error of the guard's arithmetic and of the rounding by `step` mm of the distance `tips` between
+/// the crank tips, mm. Near a singularity, where `type2` is small, such a step turns the couplers by a large
+/// angle.
 fn couplers(robot: &Robot, end: End, tips: f64, type2: f64, step: f64) -> [f64; 3] {
     let bars = robot.lizard().end(match end {
         End::Head => lizard_kinematics::End::Head,
@@ -214,7 +215,7 @@ impl Verdict {
     }
 }
 
-/// The index of the end whose loop does not close; `None` for a side.
+/// Returns the index of the five-bar that does not close; `None` if it is a side that does not close.
 pub fn open_end(fault: &Infeasible) -> Option<usize> {
     match fault.part {
         Part::End(lizard_kinematics::End::Head) => Some(0),
@@ -246,12 +247,12 @@ impl fmt::Display for Spread {
     }
 }
 
-/// A random pose anywhere in the servos' travel.
+/// Returns a random pose anywhere in the servos' travel.
 pub fn any_pose(rng: &mut Rng, calibration: &[Calibration; 4]) -> Pose {
     Pose(calibration.map(|servo| Sweep(rng.i16(servo.min.0..=servo.max.0))))
 }
 
-/// A random pose within a share of every servo's travel from neutral.
+/// Returns a random pose within a share of every servo's travel from neutral.
 pub fn pose_within(rng: &mut Rng, calibration: &[Calibration; 4], share: f64) -> Pose {
     let pose = any_pose(rng, calibration);
     Pose(
@@ -260,7 +261,7 @@ pub fn pose_within(rng: &mut Rng, calibration: &[Calibration; 4], share: f64) ->
     )
 }
 
-/// A random pose that the guard accepts.
+/// Returns a random pose that the guard accepts.
 pub fn safe_pose(rng: &mut Rng, firmware: &CoreRobot) -> Pose {
     let calibration = firmware.calibration();
     (0..1_000_000)

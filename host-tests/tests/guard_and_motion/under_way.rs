@@ -1,4 +1,4 @@
-//! Running gaits: the duration of their cycles at every pace, and the poses of their frames.
+//! Tests of gaits at full speed or at a set speed: the duration of their cycles, and the poses of their frames.
 
 use lizard_core::numbers::gaits::GaitId;
 use lizard_core::numbers::units::CYCLE;
@@ -12,7 +12,7 @@ fn a_hundred_cycles_take_a_hundred_periods() {
     for (Named { name, .. }, float, gait) in gaits() {
         let frames = (5000.0 * float.period()).round();
         let phase = (0..frames as u32).fold(0, |phase, _| gait.advance(phase, FULL_PACE));
-        // The advance is rounded to 1/2^24 cycle, so each frame may be off by half of that.
+        // The advance is rounded to 1/2^24 cycle, so each frame adds an error of up to half of 1/2^24.
         let expected = (frames / 50.0 / float.period()).fract();
         let error = (f64::from(phase) / f64::from(CYCLE)
             - if float.is_reversed() {
@@ -53,7 +53,7 @@ fn every_speed_gives_its_share_of_every_gaits_pace() {
                 for _ in 0..FRAMES {
                     let before = walker.motion().phase();
                     walker.run(1);
-                    // A frame advances by less than half a cycle, so the shorter direction is the right one.
+                    // A frame advances by less than half a cycle, so the difference wraps around without ambiguity.
                     let step = walker.motion().phase().wrapping_sub(before) << 8;
                     advance += i64::from(step as i32 >> 8);
                 }

@@ -1,5 +1,5 @@
-//! `lizard flash` as a user runs it. The board is simulated, its boot loader is the real one of a
-//! UNO or of an old Nano, and time is real.
+//! Tests of `lizard flash` as a user runs it. The board is simulated in real time, with the original boot
+//! loader of a UNO or of an old Nano.
 //!
 //! `make flash-test` runs these tests after it has compiled program and boot loader.
 
@@ -24,7 +24,7 @@ use lizard_time_limit::LIMIT;
 use shell::Shell;
 use simulated_uno::{Fidelity, Image, Port, Uno};
 
-/// Another program, which sends bytes without end at the boot loader's speed.
+/// A program other than the firmware, which sends bytes without end at the boot loader's baud rate.
 static TALKER: LazyLock<Image> = LazyLock::new(|| {
     avr_gcc::c(
         r#"
@@ -43,19 +43,19 @@ static TALKER: LazyLock<Image> = LazyLock::new(|| {
     )
 });
 
-/// The flash below the boot loader of a board that has the program's firmware and this robot.
+/// Returns the flash below the boot loader of a board that has `lizard`'s own firmware and this robot.
 fn firmware_of(robot: &Robot) -> Vec<u8> {
     let image = lizard_host::firmware::image_with(robot);
     let uno = Uno::with_image(image, Fidelity::DataSheet);
     uno.flash()[..BOOT_LOADER_START].to_vec()
 }
 
-/// The flash below the boot loader of a board that has the firmware and the robot under test.
+/// Returns the flash below the boot loader of a board that has the firmware and the robot under test.
 fn firmware() -> Vec<u8> {
     firmware_of(robot())
 }
 
-/// A robot other than the one under test, and its name in the program.
+/// Returns a robot other than the robot under test, and the name by which `lizard` knows it.
 fn another() -> (&'static str, Robot) {
     let name = match robot().name() {
         "large" => "unequal",
@@ -73,8 +73,8 @@ fn lizard_flash(desk: &Desk, arguments: &[&str]) -> Shell {
     Shell::start(&lizard, &arguments, &[])
 }
 
-/// Checks that an upload has left the EEPROM alone. The firmware writes there itself only the rest
-/// pose, for example when a slow machine makes the program reset the board several times.
+/// Checks that an upload has left the EEPROM alone, except for the rest pose. The firmware itself may write
+/// the rest pose, for example when `lizard` on a slow machine resets the board several times.
 fn assert_kept(desk: &Desk, kept: &[u8; SIZE]) {
     let rest = usize::from(REST_POSE.0)..usize::from(REST_POSE.0 + LENGTH);
     let now = desk.uno.eeprom();
@@ -86,12 +86,12 @@ fn assert_kept(desk: &Desk, kept: &[u8; SIZE]) {
     );
 }
 
-/// Pulls the cable and plugs it into another port.
+/// Unplugs the board and plugs it into another port.
 fn unplug(desk: &mut Desk) {
     desk.port = Port::new().expect("a pseudo terminal");
 }
 
-/// Runs the board until the program has ended. Returns the last screen.
+/// Runs the board until `lizard` has exited. Returns the last screen.
 fn end(desk: &mut Desk, shell: &Shell) -> String {
     desk.run_until_exit(shell);
     shell.last_screen()
@@ -116,7 +116,7 @@ fn begin(desk: &mut Desk) -> Shell {
     shell
 }
 
-/// A board whose flash has the firmware, set without an upload.
+/// Returns a board whose flash has the firmware, set without an upload.
 fn with_firmware() -> Desk {
     let mut desk = Desk::with_a_new_board();
     desk.uno.set_flash(0, &firmware());
@@ -167,7 +167,7 @@ fn one_page_that_differs_is_written_alone() {
     let screen = expect_success(&mut desk, &shell);
     let another = "the board has another build of lizard";
     assert!(screen.contains(another), "{screen}");
-    // The page that differs, and the one at address 0, where the chip starts.
+    // The page that differs, and the page at address 0, where the chip starts.
     let two = "\n256 bytes written and verified";
     assert!(screen.contains(two), "{screen}");
 }
@@ -186,7 +186,7 @@ fn a_board_unplugged_in_the_middle_does_nothing_until_it_is_written_again() {
     );
     assert!(!desk.differences(&firmware()).is_empty());
 
-    // Plugged in again: the board has power, and nobody calls its boot loader.
+    // After the board is plugged in again, it has power, and nobody calls its boot loader.
     desk.uno.power_cycle();
     desk.uno.take_transmitted();
     desk.uno.take_edges();
@@ -194,7 +194,7 @@ fn a_board_unplugged_in_the_middle_does_nothing_until_it_is_written_again() {
     assert!(desk.uno.transmitted().is_empty(), "it says nothing");
     let edges = desk.uno.take_edges();
     assert!(edges.is_empty(), "no pin moves: {edges:?}");
-    // These seconds were simulated, but a port runs in real time: the board gets a new port.
+    // A port runs in real time, but these seconds were simulated faster, so the board gets a new port.
     unplug(&mut desk);
 
     let shell = lizard_flash(&desk, &[]);
@@ -216,7 +216,7 @@ fn a_byte_that_changes_after_it_was_written_is_written_again() {
     let shell = lizard_flash(&desk, &[]);
     let mut changed = false;
     let ended = desk.run_until(|uno| {
-        // Long before it is read back.
+        // The byte changes long before it is read back.
         if !changed && uno.flash()[0x280] != 0xff {
             uno.set_flash(0x211, &[uno.flash()[0x211] ^ 0x10]);
             changed = true;

@@ -1,11 +1,11 @@
-//! An old Nano: its boot loader is slower and larger, and leaves the watchdog on.
+//! Tests with an old Nano, whose boot loader is slower and larger, and leaves the watchdog on.
 
 use super::*;
 
 /// First byte of an old Nano's boot loader.
 const NANO_BOOT: usize = 0x7800;
 
-/// A Nano as it was sold until 2018: its boot loader talks at 57 600 baud.
+/// Returns a Nano as it was sold until 2018, with a boot loader at 57 600 baud.
 fn old_nano() -> Desk {
     Desk::with(loader("old-nano.hex"))
 }
@@ -27,7 +27,7 @@ fn an_old_nano_is_found_at_its_own_speed_written_and_started() {
     assert!(desk.uno.flash()[..NANO_BOOT] == firmware_of(&large)[..NANO_BOOT]);
     assert!(desk.uno.flash()[NANO_BOOT..] == before[NANO_BOOT..]);
 
-    // Then only the robot is replaced. The loader never resets the chip by itself.
+    // Then replaces only the robot. This boot loader never resets the chip by itself.
     let shell = lizard_flash(&desk, &["--only-robot", "--robot", "paper"]);
     let screen = end(&mut desk, &shell);
     assert!(screen.contains("robot large "), "{screen}");
@@ -66,8 +66,8 @@ fn after_a_hang_an_old_nano_moves_no_servo_until_its_power_is_cut() {
     desk.uno.stall_main(1000 * simulated_uno::CYCLES_PER_MS);
     desk.uno.run_ms(400);
     desk.uno.take_edges();
-    // The loader leaves the watchdog on, which resets the chip again before the loader has ended:
-    // the RESET pin does not clear WDRF, and with it WDE stays set (data sheet, 11.9.2).
+    // The boot loader leaves the watchdog on, which resets the chip again before the boot loader ends:
+    // the RESET pin does not clear WDRF, and while WDRF is set, WDE stays set (data sheet, 11.9.2).
     desk.uno.reset();
     let resets = desk.uno.resets();
     desk.uno.run_ms(3000);

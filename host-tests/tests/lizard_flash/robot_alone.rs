@@ -1,4 +1,4 @@
-//! Uploads of a robot alone, behind the firmware that the board already has.
+//! Tests of uploads of a robot without firmware, to a board that already has the firmware.
 
 use super::*;
 
@@ -37,7 +37,7 @@ fn a_robot_alone_is_written_behind_the_firmware_and_the_trims_are_kept() {
     let end = usize::from(START) + other.section().len();
     assert!(desk.uno.flash()[..end] == firmware_of(&other)[..end]);
 
-    // Then the first robot again, by a script: its trims are unchanged.
+    // Then a script writes the first robot again, whose trims are unchanged.
     let shell = lizard_flash(&desk, &["--only-robot", "--json"]);
     let screen = self::end(&mut desk, &shell);
     let (name, hash) = its.split_once(' ').expect("name and hash");
@@ -60,7 +60,7 @@ fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
     let words = ["--only-robot", "--robot", name];
     let shell = lizard_flash(&desk, &words);
     let section = other.section();
-    // The third page of the robot is written.
+    // Waits until the third page of the robot is written.
     let third = usize::from(START) + 0x100;
     let half = desk.run_until(|uno| {
         let there = uno.flash()[third..third + 0x80] == section[0x100..0x180];
@@ -72,7 +72,7 @@ fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
     assert!(screen.contains("the port is gone"), "{screen}");
     assert!(screen.contains("half a robot now"), "{screen}");
 
-    // Plugged in again: the firmware says so, and no servo moves.
+    // After the board is plugged in again, the firmware reports the missing robot, and no servo moves.
     desk.uno.power_cycle();
     desk.uno.take_edges();
     let printed = run_line(&mut desk, "", 2500);
@@ -102,7 +102,7 @@ fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
 #[test]
 fn a_robot_alone_is_not_written_behind_another_program() {
     let mut desk = with_firmware();
-    // As avrdude leaves the flash after a sketch: only the sketch's pages differ.
+    // The flash is as avrdude leaves it after a sketch: only the sketch's pages differ.
     desk.uno.set_flash(0, &TALKER.flash());
     let before = desk.uno.flash().to_vec();
     let shell = lizard_flash(&desk, &["--only-robot"]);

@@ -1,5 +1,5 @@
-//! Damaged sections: the core refuses them, and one that has a valid checksum can harm no servo.
-//! The core runs here with checks that the chip has no room for: a number that overflows, or a
+//! Tests with damaged sections: the core refuses them, and a damaged section with a valid checksum can harm
+//! no servo. The core runs here with checks that the chip has no room for: a number that overflows, or a
 //! byte that is read beyond the section's end, fails the test.
 
 use std::mem::offset_of;
@@ -19,7 +19,7 @@ use lizard_robot::flash;
 
 use crate::sections;
 
-/// The positions of fields in a header.
+/// The byte ranges of fields in a header.
 const FORMAT: std::ops::Range<usize> = 4..6;
 const LENGTH: std::ops::Range<usize> = 6..8;
 
@@ -27,7 +27,7 @@ fn damage(section: &[u8]) -> Option<Damage> {
     Robot::open(Region::new(section)).err()
 }
 
-/// The flash of a chip into which only this beginning of a section was written.
+/// Returns the flash of a chip into which only these first bytes of a section were written.
 fn erased_after(section: &[u8]) -> Vec<u8> {
     let mut flash = section.to_vec();
     flash.resize(SPACE.into(), 0xff);
@@ -111,7 +111,7 @@ fn a_hundred_thousand_random_sections_are_refused() {
     for n in 0..100_000 {
         let mut section = vec![0; rng.usize(..=usize::from(SPACE))];
         rng.fill(&mut section);
-        // Each valid part of the header lets the check reach the next part.
+        // Each valid field of the header lets the check reach the next field.
         if n % 4 > 0 {
             put_bytes(&mut section, 0, &MAGIC.to_le_bytes());
         }
@@ -126,7 +126,7 @@ fn a_hundred_thousand_random_sections_are_refused() {
             let length = section.len() as u16;
             put_bytes(&mut section, LENGTH.start, &length.to_le_bytes());
         }
-        // One in 65 536 has the right checksum, but its numbers are refused.
+        // One section in 65 536 has the right checksum, but its numbers are refused.
         assert!(damage(&section).is_some(), "section {n}");
     }
 }
@@ -181,8 +181,8 @@ fn robots_with_changed_numbers_are_refused_or_harmless() {
     assert!(refused > 10_000 && lived > 5_000, "{refused} {lived}");
 }
 
-/// Gaits that exceed the range that their section claims for gaits, with limits at which the guard
-/// stops nothing.
+/// The gaits exceed the range that their section claims for gaits, and the limits are such that the guard
+/// accepts any margin and stroke.
 #[test]
 fn a_gait_that_would_leave_the_travel_is_held_within_it() {
     let rng = &mut rng(154);
@@ -224,7 +224,7 @@ fn a_gait_that_would_leave_the_travel_is_held_within_it() {
     assert!(held > 50, "{held} gaits were held");
 }
 
-/// Neutral angles outside the travel: the robot could not stand in them.
+/// The neutral angles lie outside the travel, so the robot could not stand.
 #[test]
 fn a_robot_whose_servo_cannot_reach_its_neutral_angle_is_refused() {
     for (named, _) in sections() {
@@ -247,9 +247,9 @@ fn a_robot_whose_servo_cannot_reach_its_neutral_angle_is_refused() {
     }
 }
 
-/// Changes a number at random: one for servos, pins or limits, or one after all these, in curves,
-/// gaits, waveforms or maps. The device trusts the bars and the offsets of the parts, which the
-/// host that made the section has checked.
+/// Changes a random number of a section: of the servos, pins or limits, or of the parts behind `Numbers`, the
+/// curves, gaits, waveforms or maps. Leaves the bars and the offsets of the parts unchanged, which the device
+/// trusts because the host that made the section has checked them.
 fn change(rng: &mut Rng, section: &mut [u8]) {
     let numbers = size_of::<Header>();
     let offset = match rng.u8(..4) {
@@ -272,8 +272,8 @@ fn change(rng: &mut Rng, section: &mut [u8]) {
     section[offset..offset + 2].copy_from_slice(&word.to_le_bytes());
 }
 
-/// Runs a robot whose section was accepted, with any numbers: it obeys or refuses each command,
-/// completes every frame, and turns no servo beyond its travel.
+/// Runs a robot with an accepted section and random commands, and checks that it completes every frame and
+/// turns no servo beyond its travel.
 fn check_motion(rng: &mut Rng, section: &[u8]) {
     let robot = Robot::open(flash(section)).expect("it was accepted");
     let mut running = Running::power_on(robot);
@@ -316,7 +316,7 @@ fn frames(running: &mut Running, count: u32) {
     }
 }
 
-/// Checks that there is no pulse, or one within the travel and the range of a hobby servo.
+/// Checks that there is no pulse, or a pulse within the travel and the range of a hobby servo.
 fn check_pulse(pulse: Width, servo: &Calibration) {
     let ends = [servo.pulse(servo.min), servo.pulse(servo.max)];
     let travel = ends[0].min(ends[1])..=ends[0].max(ends[1]);

@@ -1,5 +1,5 @@
-//! The robot's section of flash: the core reads what was written, and an invalid section moves no
-//! servo.
+//! Tests of the robot's section of flash: the core reads the numbers that were written, and an invalid section
+//! moves no servo.
 
 use std::sync::LazyLock;
 
@@ -8,7 +8,7 @@ use lizard_host_tests::{Named, robots};
 mod damaged;
 mod read_back;
 
-/// The sections of all robots, those of files first.
+/// Returns all robots with their sections, the robots from files first.
 fn sections() -> &'static [(&'static Named, Vec<u8>)] {
     static SECTIONS: LazyLock<Vec<(&'static Named, Vec<u8>)>> = LazyLock::new(|| {
         let sections = robots().iter().map(|named| (named, named.robot.section()));

@@ -1,6 +1,6 @@
-//! Sections that are read back: each field must match robot.toml. The reader is the one of the
-//! AVR. The expected values are those of the robot in floating point, not the numbers that the
-//! section was made of.
+//! Tests that read sections back with the reader of the AVR: each field must match robot.toml. The
+//! expected values come from the robot in floating point, not from the numbers that the section was
+//! made of.
 
 use lizard_core::guard::clearance::Clearance;
 use lizard_core::numbers::bars::Bars;
@@ -16,7 +16,8 @@ use lizard_robot::{Robot as Toml, STEPS_PER_DEGREE};
 
 use crate::sections;
 
-/// Runs a test on every robot as the core reads it, and on the robot that was written.
+/// Runs a test for every robot. The test gets the robot's name, the robot as the core reads it, the robot
+/// that was written, and the flash.
 fn for_each_robot(test: impl Fn(&str, &Robot, &Toml, Region<'_>)) {
     for (named, section) in sections() {
         let flash = Region::new(section);
@@ -30,7 +31,7 @@ fn numbers(flash: Region<'_>) -> Numbers {
     flash.read(size_of::<Header>() as u16)
 }
 
-/// A length in steps, rounded to nearest.
+/// Returns a length in steps, rounded to nearest.
 fn steps(mm: f64, scale: Scale) -> f64 {
     (mm * f64::from(1u32 << scale.bits)).round()
 }
@@ -146,7 +147,7 @@ fn the_limits_the_slew_limit_and_what_the_gaits_need_are_read_back() {
                 degrees(read.min.0.into()) - min,
                 degrees(read.max.0.into()) - max,
             ];
-            // A tenth of a degree for the tables, and a step of rounding.
+            // The tables may be off by a tenth of a degree, and rounding by a step.
             assert!(
                 error.iter().all(|error| error.abs() < 0.11),
                 "{name} {servo:?}: {error:?}"
@@ -169,7 +170,7 @@ fn the_bars_and_the_sliders_are_read_back() {
             let bars = [base, left, right].map(length);
             let expected = Bars::new(bars, [a, b].map(length), scale);
             assert_eq!(*five_bar.bars(), expected, "{name} {end:?}");
-            // The lengths fit at this scale.
+            // The lengths must fit at this scale.
             let longest = (base + left + right).max(a).max(b);
             let fits = |bits: u32| longest * f64::from(1u32 << bits) < 127.0 * 256.0;
             let bits = u32::from(scale.bits);
@@ -203,7 +204,7 @@ fn the_bars_and_the_sliders_are_read_back() {
     });
 }
 
-/// The four tables of an end, each with its own argument and expected entry.
+/// The four tables of a five-bar, each with its own argument and expected entries.
 #[derive(Clone, Copy, PartialEq)]
 enum Shape {
     Rise,
@@ -251,7 +252,7 @@ fn the_curves_at_every_point_of_their_tables_are_read_back() {
                         _ => ((reach - s) * (s - smallest)).sqrt() / s,
                     };
                     let exact = (1024.0 * exact).min(32_767.0);
-                    // One unit of rounding, and the rounding of `s`, which matters where the curve is
+                    // Rounding of the entry by one unit, and rounding of `s`, which matters where the curve is
                     // steep.
                     let tolerance = 1.01 + exact * 2.0 / (s - smallest).min(reach - s).max(1.0);
                     let error = f64::from(entry) - exact;
@@ -300,10 +301,11 @@ fn the_gaits_their_names_and_their_waveforms_at_every_phase_are_read_back() {
     });
 }
 
-/// The servos of each map: the one of its rows and the one of its columns.
+/// The servos of each map: the servo of its rows and the servo of its columns.
 const PAIRS: [[usize; 2]; 4] = [[0, 1], [2, 3], [0, 3], [1, 2]];
 
-/// The rows of the four maps: the sweeps of each row, and the sweeps of the column that are certified in it.
+/// Reads the rows of the four maps: the row servo's sweeps in each row, and the column servo's sweeps that are
+/// certified in this row.
 fn maps(flash: Region<'_>) -> [Vec<[std::ops::RangeInclusive<i32>; 2]>; 4] {
     let numbers = numbers(flash);
     let place = numbers.parts[Part::Rows as usize];

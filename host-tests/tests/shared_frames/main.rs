@@ -1,4 +1,4 @@
-//! Functions with shared prologues and epilogues behave as with prologues and epilogues of their own.
+//! Tests that functions with shared prologues and epilogues behave as with prologues and epilogues of their own.
 
 use std::fs;
 
@@ -79,12 +79,12 @@ int main(void) {
 }
 "#;
 
-/// The address of a variable in RAM.
+/// Returns the address of a variable in RAM.
 fn address(image: &Image, name: &str) -> u16 {
     (image.symbol(name).expect("it has one").address - 0x80_0000) as u16
 }
 
-/// The results of the program, and the depth of its stack.
+/// Runs the program and returns its results and the depth of its stack.
 fn results(image: &Image) -> (Vec<u8>, u16) {
     let [done, results] = ["done", "results"].map(|name| address(image, name));
     let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
@@ -101,7 +101,7 @@ fn a_program_computes_the_same_with_shared_beginnings_and_ends() {
         .expect("it is an object")
         .expect("of an AVR");
     assert!(savings.frames > 100, "{savings:?}");
-    // One of the three in `jumps` stays.
+    // The linker shortens two of the three branches over jumps in `jumps`.
     assert_eq!(savings.branches, 2, "{savings:?}");
     let plain = link("", &object).expect("it links");
     let short = link(ROUTINES, &shrunk).expect("it links");
@@ -109,12 +109,13 @@ fn a_program_computes_the_same_with_shared_beginnings_and_ends() {
     let ((plain, deep), (short, deeper)) = (results(&plain), results(&short));
     assert_eq!(plain, short);
     assert!(plain.iter().any(|byte| *byte != 0));
-    // Ten frames of `deep` are on the stack at once; each may save a register more.
+    // Ten frames of `deep` are on the stack at once; each may save one more register.
     assert!(deeper.abs_diff(deep) < 40, "{deep} {deeper}");
 }
 
-/// A function whose last argument lies on the stack, above the registers that it pushed. It does not
-/// push every register between the first and the last, and has variables on the stack, too.
+/// A program with a function whose last argument lies on the stack, above the registers that the function
+/// pushes. The function skips some registers between the first and the last that it pushes, and has
+/// variables on the stack, too.
 const STACK_ARGUMENT: &str = r#"
 #include <stdint.h>
 volatile uint8_t done, sum;
@@ -152,14 +153,14 @@ fn callers_do_not_rely_on_what_a_shared_beginning_changes() {
     assert!(!passes.contains("ipra"), "{passes}");
 }
 
-/// The call-saved registers: a function must leave them as they were.
+/// The call-saved registers, which a function must restore before it returns.
 const KEPT: [u8; 18] = [
     2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 28, 29,
 ];
 
-/// A program that calls, forty times, a function that saves the registers from `first` on, reserves
-/// `room` bytes, overwrites both, restores the registers and returns, while a timer interrupts every
-/// 61 cycles. The registers and the stack pointer remain in RAM.
+/// Returns a program that calls a function forty times, while a timer interrupts every 61 cycles. The function
+/// saves the registers from `first` on, reserves `room` bytes, overwrites both, restores the registers and
+/// returns. At the end, the program stores the registers and the stack pointer in RAM.
 fn program(first: u8, room: u8) -> String {
     let load = |registers: &[u8], plus: u8| -> String {
         let each = registers.iter();

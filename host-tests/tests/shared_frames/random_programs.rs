@@ -1,7 +1,7 @@
-//! Random C functions, which must compute the same before and after the linker rewrites them.
+//! Test that random C functions compute the same before and after the linker rewrites them.
 //!
-//! They have up to 30 bytes of arguments, of which 18 fit into registers; their arrays lie on the
-//! stack, they call one another, and a timer interrupts them.
+//! The functions have up to 30 bytes of arguments, of which 18 fit into registers. Their arrays lie on
+//! the stack, they call one another, and a timer interrupts them.
 
 use std::iter;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
@@ -21,10 +21,10 @@ const FUNCTIONS: usize = 40;
 /// Number of functions in a group. A function calls only others of its group, so that the stack suffices.
 const GROUP: usize = 5;
 
-/// Number of programs in an ordinary run. Five times as many have 10 000 functions.
+/// Number of programs in an ordinary run; together they have 2000 functions.
 const PROGRAMS: u64 = 50;
 
-/// Types of arguments and the bytes that each takes of the 18 in registers.
+/// Types of arguments, and the bytes of registers that an argument of each type takes.
 const TYPES: [(&str, usize); 5] = [
     ("uint8_t", 2),
     ("uint16_t", 2),
@@ -33,7 +33,7 @@ const TYPES: [(&str, usize); 5] = [
     ("int8_t", 2),
 ];
 
-/// A random expression of these variables.
+/// Returns a random expression of these variables.
 fn expression(random: &mut Rng, names: &[String], depth: u8) -> String {
     if depth > 1 || random.u8(..4) == 0 {
         return match random.usize(..=names.len()) {
@@ -106,7 +106,7 @@ fn function(random: &mut Rng, signatures: &mut Vec<Vec<&'static str>>) -> String
     )
 }
 
-/// A program that calls each of its functions twice and keeps what they return.
+/// Returns a program that calls each of its functions twice and stores the return values.
 fn program(random: &mut Rng) -> String {
     let mut signatures = Vec::new();
     let functions: String = (0..FUNCTIONS)
@@ -139,7 +139,7 @@ fn program(random: &mut Rng) -> String {
     )
 }
 
-/// The values that the functions returned.
+/// Runs a program and returns the two return values of each function.
 fn results(image: &Image) -> Vec<[u8; 4]> {
     let [done, results] = ["done", "results"].map(|name| address(image, name));
     let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
@@ -154,8 +154,9 @@ fn results(image: &Image) -> Vec<[u8; 4]> {
     (0..FUNCTIONS as u16).map(of).collect()
 }
 
-/// The functions of a program that return another value after the linker has rewritten it, and true if
-/// it has rewritten any. `None` if avr-gcc fails, for want of a register or because a branch is too far.
+/// Returns the functions of a program that return another value after the linker has rewritten it, and true if
+/// the linker has rewritten any function. `None` if avr-gcc fails because it runs out of registers or a branch
+/// is too far.
 fn differences(seed: u64) -> Option<(Vec<usize>, bool)> {
     let object = object_of_c(&program(&mut Rng::with_seed(seed))).ok()?;
     let plain = link("", &object).ok()?;

@@ -1,10 +1,10 @@
-//! A command in the root of the repository, as a user types it: its screen can be read while it
-//! runs, lines can be typed, Ctrl-C ends it.
+//! A command that runs in the root of the repository as a user starts it: a test reads its screen while
+//! it runs, types lines, and ends it with Ctrl-C.
 //!
 //! A process inherits from its parent the signals that it ignores, and a shell without job control
-//! makes commands that it starts with `&` ignore Ctrl-C. If these tests run in this way, a command
-//! would ignore it, too, until it sets a handler of its own. So it starts with the default signals,
-//! as from a user's shell.
+//! makes commands that it starts with `&` ignore Ctrl-C. If these tests are started with `&`, a command
+//! would also ignore Ctrl-C until it sets a handler of its own. So the command starts with the default
+//! signals, as from a user's shell.
 #![allow(dead_code)] // each test uses a part of it
 
 use std::io::{Read, Write};
@@ -18,7 +18,7 @@ use lizard_host_tests::root;
 use lizard_time_limit::LIMIT;
 use rustix::process::{Pid, Signal, kill_process_group};
 
-/// The time before Ctrl-C is pressed again.
+/// The time after which Ctrl-C is pressed again.
 const CTRL_C_INTERVAL: Duration = Duration::from_secs(1);
 
 pub struct Shell {
@@ -51,7 +51,7 @@ impl Shell {
             show(child.stdout.take().expect("it is piped"), &screen),
             show(child.stderr.take().expect("it is piped"), &screen),
         ];
-        // Kept open: at the end of its input, ravedude's console reads without a pause.
+        // The pipe stays open, since ravedude's console reads without a pause at the end of its input.
         let keyboard = child.stdin.take().expect("it is piped");
         let child = Mutex::new(child);
         Self {
@@ -63,14 +63,14 @@ impl Shell {
         }
     }
 
-    /// Everything printed so far.
+    /// Returns everything printed so far.
     pub fn screen(&self) -> String {
         let screen = self.screen.lock().expect("nobody panics with it");
         String::from_utf8_lossy(&screen).into_owned()
     }
 
-    /// Everything printed by a command that has ended completely; its last output may still be in a
-    /// pipe.
+    /// Returns everything printed by a command that has ended. Waits for its last output, which may still be in
+    /// a pipe.
     pub fn last_screen(&self) -> String {
         let read = LIMIT.wait_for(|| self.readers.iter().all(JoinHandle::is_finished));
         let screen = self.screen();
@@ -87,8 +87,8 @@ impl Shell {
         child.try_wait().expect("it is our child").is_some()
     }
 
-    /// Presses Ctrl-C, again and again until the command ends; the test fails if it
-    /// never does.
+    /// Presses Ctrl-C repeatedly until the command ends. The test fails if the command
+    /// never ends.
     pub fn interrupt(&mut self) {
         let mut pressed: Option<Instant> = None;
         let ended = LIMIT.wait_for(|| {

@@ -1,4 +1,4 @@
-//! The commands and faults that the search applies, and their names in reports.
+//! Commands and faults that the search applies, and their names in reports.
 
 use std::fmt;
 
@@ -17,7 +17,7 @@ pub enum Action {
     Noise,
     /// Lines are sent at this rate from now on.
     SendAt(Rate),
-    /// Main does its most urgent task.
+    /// Main performs its most urgent task.
     Step,
     /// Frames pass.
     Frames(u8),
@@ -25,8 +25,8 @@ pub enum Action {
     Stall(u16),
     /// The supply falls or rises to this many millivolts.
     Supply(u16),
-    /// If true, three servos that wake pull the supply down to 2.4 V from now on; if false, no
-    /// longer.
+    /// If true, the supply is weak from now on: when three servos have woken, they pull it down to
+    /// 2.4 V. If false, the supply is strong again.
     Weak(bool),
     /// A pulse's edge comes late.
     Late,
@@ -34,7 +34,8 @@ pub enum Action {
     Stack,
     /// The processor is reset.
     Reset(Cause),
-    /// Power is lost and comes back; a byte that was being written has this value.
+    /// Power is lost and comes back. The byte that was being written then has this value; `None` if no byte is
+    /// torn.
     LosePower(Option<u8>),
     /// If true, the contact at this pin closes; if false, it opens.
     Contact(u8, bool),
@@ -42,7 +43,7 @@ pub enum Action {
     StopReading(bool),
 }
 
-/// Lines that are tried. Each word that begins none of them is tried with its example.
+/// Lines that are tried. Each command word that begins none of these lines is tried with its example.
 const LINES: [&str; 30] = [
     "stand",
     "walk",
@@ -77,7 +78,7 @@ const LINES: [&str; 30] = [
 ];
 
 impl Action {
-    /// Every action, possible or not in the current state.
+    /// Returns every action, even if the current state does not permit it.
     pub fn all() -> Vec<Self> {
         let mut all = vec![
             Self::Frames(1),
@@ -95,8 +96,8 @@ impl Action {
         all.extend(LINES.map(Self::Say));
         all.extend(Rate::ALL.map(Self::SendAt));
         all.extend(others.map(|word| Self::Say(word.example())));
-        // The last hand-over was 16 ms ago. In these times main misses no hand-over, one, three or
-        // five; or the watchdog ends the pulses; or it resets the chip.
+        // The last hand-over of a frame was 16 ms ago. In these times main misses no hand-over, one, three or
+        // five; or the watchdog ends the pulses; or the watchdog resets the chip.
         all.extend([3, 15, 60, 100, 120, 130, 200, 229, 240].map(Self::Stall));
         all.extend([5_000, 4_100, 3_900, 3_500].map(Self::Supply));
         all.extend([Self::Weak(true), Self::Weak(false)]);

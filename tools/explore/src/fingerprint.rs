@@ -1,11 +1,11 @@
-//! Equality of states: two states are equal if the core's own `Debug` shows the same for both,
-//! except for counters that have no effect.
+//! Fingerprints that decide which states are equal: two states are equal if the core's own `Debug` output
+//! is the same for both, except for counters that have no effect.
 //!
 //! The core derives `Debug` for everything it holds, so a new field is included
 //! automatically, and the core needs no code for this. A field that cannot matter is left
 //! out. A field that is only compared with a few values, such as a countdown, is rounded
-//! as `RULES` says. Of states that differ only in what rounding removes, the one that is
-//! reached first represents all.
+//! as `RULES` says. Of several states that rounding makes equal, the search explores only
+//! the first that it reaches.
 
 use std::fmt::{self, Write};
 
@@ -21,17 +21,17 @@ enum Treatment {
 
 use Treatment::{Coarse, Skip};
 
-/// A struct, its field, and the treatment of that field.
+/// The name of a struct, the name of a field in it, and the treatment of that field.
 type Field = (&'static str, &'static str, Treatment);
 
-/// The treatment of fields, by the name of their struct.
+/// The fields that are left out or rounded in a state's fingerprint.
 const RULES: &[Field] = &[
     ("Main", "ticks", Skip),
-    // The previous line; the next byte begins a new one.
+    // The previous line has no effect, since the next byte begins a new line.
     ("Console", "line", Skip),
     // No action ends within a line, so no line waits for its rest.
     ("Console", "silence", Skip),
-    // A line at another rate has enough wrong bytes, however many came before.
+    // A line at another rate has enough wrong bytes to change the rate, however many came before.
     ("RateFinder", "wrong_bytes", Skip),
     (
         "Motion",
@@ -48,7 +48,7 @@ const RULES: &[Field] = &[
     ("Led", "frames", Skip),
     ("Safety", "is_lit", Skip),
     ("Safety", "late", Skip),
-    // The observer counts this, too, where it matters.
+    // The observer counts the silence, too, where it matters.
     ("Safety", "silence", Skip),
     ("Safety", "boot", Coarse(countdown)),
     ("Supply", "reading", Skip),
@@ -95,12 +95,12 @@ fn pace(pace: u64) -> u64 {
     u64::from(pace > 0) + u64::from(pace >= 1024)
 }
 
-/// Returns a number that is the same for two values that no rule tells apart.
+/// Returns a fingerprint that rounds fields or leaves them out as `RULES` says.
 pub fn coarse(value: &impl fmt::Debug) -> u64 {
     fingerprint(value, RULES)
 }
 
-/// Returns the fingerprint of every field except those that record that a line has arrived.
+/// Returns the exact fingerprint of every field except those that record that a line has arrived.
 pub fn without_line_counters(value: &impl fmt::Debug) -> u64 {
     fingerprint(value, A_LINE_CAME)
 }
@@ -142,19 +142,20 @@ impl Fingerprint {
 struct Reader {
     rules: &'static [Field],
     fingerprint: Fingerprint,
-    /// The structs around the value: hashes of their names, 0 for a value without fields.
+    /// The values around the next piece, outermost first: the hash of a struct's name, or 0 for a tuple or
+    /// a list.
     within: Vec<u64>,
     /// The hash of the previous piece.
     last: u64,
     /// True if the next piece is a field's name.
     names_field: bool,
-    /// The rounding of numbers in the field at this depth.
+    /// The rounding of numbers in the current field, and the depth of that field.
     number: Option<(Rounding, usize)>,
-    /// The depth of the value that is left out.
+    /// The depth of the field that is being left out.
     skipped: Option<usize>,
 }
 
-/// The hash of a short text, also at compile time.
+/// Returns the hash of a short text.
 const fn hash(text: &str) -> u64 {
     let bytes = text.as_bytes();
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
@@ -259,7 +260,7 @@ mod tests {
         list: [1, 2, 3],
     };
 
-    /// The motion with one change.
+    /// Returns [`MOTION`] with one change.
     fn motion_with(change: impl Fn(&mut Motion)) -> Motion {
         let mut motion = MOTION;
         change(&mut motion);

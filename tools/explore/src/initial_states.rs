@@ -1,4 +1,4 @@
-//! The initial states of a search: every kind of EEPROM contents, each with several activities.
+//! Initial states of a search: every kind of EEPROM contents, each with several activities.
 
 use lizard_core::memory::copies::COPIES;
 use lizard_core::memory::record::Progress;
@@ -22,7 +22,7 @@ pub struct InitialState {
     pub world: World,
 }
 
-/// EEPROM contents, each with the actions of a standing robot that write them.
+/// Names of EEPROM contents, each with the actions by which a standing robot writes these contents.
 const MEMORIES: [(&str, &[Action]); 5] = [
     ("a blank memory", &[]),
     (
@@ -72,7 +72,7 @@ const MEMORIES: [(&str, &[Action]); 5] = [
     ),
 ];
 
-/// The name of a power-on with a boot loader, which hides the cause of each reset.
+/// The name of the power-on conditions with a boot loader, which hides the cause of each reset.
 const WITH_BOOT_LOADER: &str = "a boot loader and a blank memory";
 
 /// The robot's actions between power-on and the start of the search.
@@ -82,7 +82,7 @@ const ACTIVITIES: [&[Action]; 11] = [
     &[Frames(160), Say("walk"), Frames(25)],
     &[Frames(160), Say("round"), Frames(25)],
     &[Frames(160), Say("patrol"), Frames(5)],
-    // The guard holds the robot: this gait leaves the safe poses.
+    // The guard holds the robot, since the gait `stray` leaves the safe poses.
     &[Frames(160), Say("stray"), Frames(160)],
     &[Frames(160), Say("rest"), Frames(25)],
     &[Frames(160), Say("trim 1 8"), Frames(25)],
@@ -96,7 +96,7 @@ const ACTIVITIES: [&[Action]; 11] = [
     &[Frames(25), Stall(240), Frames(5)],
 ];
 
-/// An EEPROM with valid settings that leave servo A3 too little travel for the gaits.
+/// Returns an EEPROM with valid settings that leave servo A3 too little travel for the gaits.
 fn cut_off(robot: &Robot) -> Eeprom {
     let mut settings = Settings::of(robot);
     let mut set = settings.servo(Servo::ALL[2]);
@@ -108,16 +108,16 @@ fn cut_off(robot: &Robot) -> Eeprom {
     Eeprom::with(*memory.bytes())
 }
 
-/// Every initial state.
+/// Returns every initial state: each EEPROM with each activity that breaks no rule.
 ///
 /// # Panics
-/// If a memory cannot be made.
+/// If an EEPROM's contents cannot be prepared.
 pub fn all(robot: Robot<'static>) -> Vec<InitialState> {
     let mut memories: Vec<(&'static str, Eeprom)> = MEMORIES
         .iter()
         .map(|(name, actions)| {
             let mut world = World::power_on(robot, Eeprom::blank());
-            // A broken rule is ignored here: the search reports it, too.
+            // A broken rule is ignored here, since the search reports it, too.
             _ = world.apply(Frames(160));
             for action in *actions {
                 _ = world.apply(*action);

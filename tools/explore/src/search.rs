@@ -1,8 +1,8 @@
-//! Searches breadth first through all sequences of [`Action`]s, as far as time allows.
+//! Breadth-first search through all sequences of [`Action`]s, up to a number of states.
 //!
-//! All states that are reached by one number of actions are processed before any of the next, by as
+//! All states that `n` actions reach are processed before the states that `n + 1` actions reach, by as
 //! many threads as there are processors. So the first sequence that breaks a rule is one of the
-//! shortest. Of a processed state only its number is kept, and the step that reached it.
+//! shortest. Of a processed state, the search keeps only the fingerprint and the step that reached it.
 
 use std::collections::{BTreeMap, HashSet};
 use std::fmt::Write as _;
@@ -27,11 +27,11 @@ type SeenStates = HashSet<u64>;
 /// The results of a search.
 #[derive(Debug, Default)]
 pub struct SearchResult {
-    /// Distinct states.
+    /// Number of distinct states.
     pub states: usize,
-    /// Actions tried.
+    /// Number of actions tried.
     pub tried: usize,
-    /// Actions of the longest sequence.
+    /// Number of actions in the longest sequence.
     pub longest: usize,
     /// True if no state is left to explore.
     pub is_complete: bool,
@@ -46,7 +46,7 @@ struct Step {
     action: u8,
 }
 
-/// Searches from all initial states, until `max` distinct states are reached or none is left.
+/// Searches from all initial states, until `max` distinct states are reached or no state is left to explore.
 pub fn search(robot: Robot<'static>, max: usize) -> SearchResult {
     let actions = Action::all();
     let initial_states = initial_states::all(robot);
@@ -86,7 +86,7 @@ pub fn search(robot: Robot<'static>, max: usize) -> SearchResult {
             broken.extend(part.broken);
             next.extend(part.reached);
         }
-        // Sorted, so that the result does not depend on which thread was quicker.
+        // The broken rules are sorted, so that the result does not depend on which thread was faster.
         broken.sort_by_key(|(from, action, _)| (*from, *action));
         for (from, action, fault) in broken {
             let entry = found.broken.entry(fault.rule).or_insert_with(|| {
@@ -191,7 +191,7 @@ fn apply_catching_panics(world: &mut World, action: Action) -> Verdict {
     })
 }
 
-/// Describes a sequence in words.
+/// Describes the sequence that ends with the step `last` in words.
 fn describe(
     initial_states: &[InitialState],
     steps: &[Step],

@@ -1,4 +1,4 @@
-//! A small robot: the paper's, with few and short gaits, so that the states of a walk
+//! A small robot: the paper's robot with few and short gaits, so that the states of a walk
 //! soon repeat. One of its gaits is unsafe, which would be refused in a robot.toml.
 
 use lizard_core::numbers::calibration::Reach;
@@ -9,11 +9,11 @@ use lizard_core::numbers::slew::Slew;
 use lizard_core::numbers::units::Sweep;
 use lizard_robot::flash;
 
-/// The slew limit, 1/65536 turn in a frame, a third of the paper's: a servo that starts with
-/// a pulse for another position jumps by more than that.
+/// The slew limit, 1/65536 turn in a frame: a third of the paper's, so that a servo that starts with
+/// a pulse for a wrong position jumps by more than the limit.
 const PER_FRAME: u16 = 364;
 
-/// The declared travel to either side of neutral, 1/65536 turn; only `stray` exceeds it.
+/// The sweep to either side of neutral that the gaits declare, 1/65536 turn; only `stray` exceeds it.
 const NEED: i16 = 1_000;
 
 /// Arduino number of the button's pin, A1.
@@ -21,8 +21,8 @@ pub const BUTTON: u8 = 15;
 /// Arduino number of the pin of the nose contact, A2.
 pub const NOSE: u8 = 16;
 
-/// The paper's robot with `stand`, `walk`, `trot` and `stray`, which leaves safe ground, and
-/// two endless routines: `round` walks and stands, `patrol` waits for a button, walks up to a
+/// Returns the paper's robot with the gaits `stand`, `walk`, `trot` and `stray`, which leaves the safe
+/// poses, and two endless routines: `round` walks and stands, `patrol` waits for a button, walks up to a
 /// wall, and turns away.
 ///
 /// # Panics

@@ -1,4 +1,4 @@
-//! A robot, the board it runs on, and an observer who checks the rules.
+//! A state of the search: a robot, the board it runs on, and an observer that checks the rules.
 
 mod inside;
 mod lines;
@@ -25,11 +25,11 @@ fn broken(rule: Rule, seen: impl Into<String>) -> Verdict {
     Err(BrokenRule::new(rule, seen))
 }
 
-/// A line as a receiver at another rate reads it: wrong bytes, enough to make the robot leave any
-/// rate.
+/// The bytes that a receiver at another rate reads in place of a line: enough wrong bytes to make the robot
+/// leave any rate.
 const UNREADABLE: [u8; 40] = [GARBLED; 40];
 
-/// Number of lines after which a robot has found the rate of the sender.
+/// Number of lines within which a robot must find the rate of the sender.
 const FOUND_AFTER: usize = 12;
 
 /// The cycles of a frame.
@@ -56,7 +56,7 @@ pub struct World {
 }
 
 impl World {
-    /// A robot whose power has just come on.
+    /// Returns a robot whose power has just come on.
     pub fn power_on(robot: Robot<'static>, mut memory: Eeprom) -> Self {
         memory.slowness = 4;
         memory.is_timed = true;
@@ -83,7 +83,7 @@ impl World {
         let memory = board.memory.bytes();
         for record in COPIES.map(|copy| copy.0).into_iter().chain([REST_POSE.0]) {
             let record = &memory[usize::from(record)..][..usize::from(LENGTH)];
-            // The content of a record that is not valid is never used.
+            // The firmware never uses the content of an invalid record.
             let used = if record[0] == VALID_MARK {
                 record
             } else {
@@ -147,7 +147,7 @@ impl World {
     /// Applies an action.
     ///
     /// # Errors
-    /// Returns the first rule that is broken by it.
+    /// Returns the first rule that the action breaks.
     pub fn apply(&mut self, action: Action) -> Verdict {
         let was_kept = self.observer.rests() && self.rest_is_kept();
         match action {
@@ -248,7 +248,7 @@ impl World {
         Ok(())
     }
 
-    /// The code of the fault that stopped the robot, 0 for none.
+    /// Returns the code of the fault that stopped the robot, 0 for none.
     fn fault(&self) -> u8 {
         let fault = self.running.main.control().fault();
         fault.map_or(0, Fault::code)
@@ -259,7 +259,7 @@ impl World {
             // Main no longer runs; the watchdog is about to restart it.
             return self.stall(20);
         }
-        // `stand` and `stop` within a frame leave it held, for a reason that is reported.
+        // `stand` and `stop` within one frame leave the robot held; that reason is already reported.
         let was_held = self.running.motion().hazard().is_some();
         let since = self.now;
         let rested = self.running.motion().is_resting();
@@ -271,7 +271,7 @@ impl World {
         if !was_held && self.running.motion().hazard().is_some() {
             self.observe(Event::Fault);
         }
-        // The decision was made at the start of the frame.
+        // Main decided at the start of the frame, so the output counts from there.
         self.listen(since + MS)?;
         self.judge_writes()?;
         let is_heard =
@@ -296,7 +296,7 @@ impl World {
         self.observer.verdict()
     }
 
-    /// Stalls main. It then catches up to the end of that frame, or the watchdog restarts it.
+    /// Stalls main. Afterwards main runs to the end of the frame, unless the watchdog has restarted the program.
     fn stall(&mut self, ms: u16) -> Verdict {
         self.observe(Event::Stalled(self.now + Time::from(ms) * MS));
         for _ in 0..ms / 20 {
@@ -319,7 +319,7 @@ impl World {
         self.listen(self.now - FRAME)
     }
 
-    /// Lets time pass while main does not run; true if the watchdog has restarted the program.
+    /// Lets time pass while main does not run. Returns true if the watchdog has restarted the program.
     fn pass_time(&mut self, ms: u16) -> bool {
         let was_reset = self.running.board.pass_time(ms);
         if was_reset {

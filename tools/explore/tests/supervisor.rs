@@ -1,8 +1,9 @@
-//! A hundredth of `make explore`: no sequence of a few actions from any beginning breaks a rule.
+//! Test with a hundredth of the states of `make explore`: from any initial state, no sequence of a few actions breaks
+//! a rule.
 
 use lizard_explore::{search, small::small};
 
-/// States to go through.
+/// Number of states to explore.
 const STATES: usize = 100_000;
 
 #[test]

@@ -1,5 +1,5 @@
-//! The core on a virtual board, whose time passes by calls only. An observer judges each byte and
-//! each frame.
+//! The core on a virtual board, where time passes only in calls of [`Board::frame`]. An observer
+//! judges each byte and each frame.
 
 use lizard_core::console::command::{effect, parse};
 use lizard_core::console::word::Effect;
@@ -23,7 +23,7 @@ pub struct Board {
     is_overlong: bool,
 }
 
-/// The limits of a robot whose supply is good and whose lines come between frames.
+/// Returns the observer's limits for a robot whose supply is good and whose lines come between frames.
 fn limits(robot: &Robot) -> Limits {
     let cycles = |us: f64| (us * 16.0).round() as u32;
     let servos = robot.servos().each_ref();
@@ -81,12 +81,12 @@ impl Board {
         );
     }
 
-    /// The output since the last byte.
+    /// Returns the output since the last byte was sent.
     pub fn output(&self) -> &str {
         &self.output
     }
 
-    /// The robot's memory.
+    /// Returns the robot's EEPROM.
     pub const fn memory(&self) -> &Eeprom {
         &self.running.board.memory
     }
@@ -112,7 +112,7 @@ impl Board {
                 }
             }
             0x08 | 0x7f => _ = self.line.pop(),
-            // A garbled byte: its line is answered, whatever else it contains.
+            // A line with a garbled byte is answered, whatever else it contains.
             0x80.. => self.is_overlong = true,
             _ if self.line.len() == 63 => self.is_overlong = true,
             _ => self.line.push(byte),
@@ -170,7 +170,7 @@ impl Board {
     /// Checks that the memory holds complete settings or none, and a complete pose or none.
     ///
     /// # Panics
-    /// If it does not.
+    /// If the memory holds anything else.
     pub fn assert_memory_is_right(&self) {
         let rule = Rule::Memory.sentence();
         let robot = self.robot.firmware();

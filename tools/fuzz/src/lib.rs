@@ -1,12 +1,12 @@
-//! Inputs that must not harm the core: any bytes at its console, any bytes in its EEPROM.
+//! Fuzz targets for the core: any bytes at its console, any bytes in its EEPROM.
 //!
 //! Bytes come from a half-open port, a modem manager or a cat on the keyboard; the
-//! EEPROM may hold another program's data. Whatever they are, each line has one
+//! EEPROM may hold another program's data. Whatever the bytes are, each line gets one
 //! answer, no pulse leaves a servo's limits, and saved settings stay intact.
 //!
-//! [`console`] and [`memory`] check that for one input. `make test` calls them with
-//! millions of seeded random bytes and lines, `make fuzz` with the inputs that LLVM's
-//! libFuzzer generates.
+//! [`console`] and [`memory`] check one input. `make test` calls them with millions of
+//! seeded random bytes and lines, `make fuzz` with the inputs that LLVM's libFuzzer
+//! generates.
 
 mod board;
 
@@ -20,7 +20,7 @@ use lizard_core::memory::settings::Settings;
 use lizard_core::virtual_board::Eeprom;
 use lizard_robot::Robot;
 
-/// The robot that `LIZARD_ROBOT` names, else the source tree's robot.toml.
+/// Returns the robot in the file that `LIZARD_ROBOT` names, by default the source tree's robot.toml.
 ///
 /// # Panics
 /// If the file is not a valid robot.
@@ -33,10 +33,10 @@ pub fn robot() -> &'static Robot {
     &ROBOT
 }
 
-/// Sends bytes to the console, with a frame after every eight.
+/// Sends bytes to the console, with a frame after every eight bytes.
 ///
 /// # Panics
-/// If they break a rule.
+/// If the robot breaks a rule.
 pub fn console(data: &[u8]) {
     let mut board = Board::new(robot(), Eeprom::blank());
     for eight in data.chunks(8) {
@@ -49,12 +49,12 @@ pub fn console(data: &[u8]) {
     board.assert_memory_is_right();
 }
 
-/// Starts a robot with an EEPROM made of these bytes. The first ones change the contents of its
-/// three records, which stay valid; each further three set a byte anywhere, so that a record
-/// may be damaged, too.
+/// Starts a robot with an EEPROM made from these bytes. The first bytes change the contents of the
+/// EEPROM's three records, which stay valid. Each further group of three bytes sets one byte at any
+/// address, which may damage a record.
 ///
 /// # Panics
-/// If it breaks a rule.
+/// If the robot breaks a rule.
 pub fn memory(data: &[u8]) {
     let robot = robot();
     let mut memory = Eeprom::blank();

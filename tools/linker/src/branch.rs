@@ -1,4 +1,4 @@
-//! A branch over a jump becomes the opposite branch.
+//! Replacement of a branch over a jump by the opposite branch.
 //!
 //! ```text
 //! breq 1f          brne 2f
@@ -12,12 +12,12 @@ use crate::code::Code;
 use crate::edit::{Edit, Reference};
 use crate::instruction::{is_branch, is_rjmp, may_skip_next};
 
-/// The reach of a branch, bytes. Later edits never increase a distance.
+/// Distance that a branch certainly reaches, bytes. Later edits never increase a distance.
 const REACH: u64 = 2 * 60;
 
-/// Returns the edit of the first branch over a jump to which no other jump leads. `place` gives the
-/// offset of a reference's target if it is in this code; `targets` are the offsets that something
-/// refers to.
+/// Returns the edit that replaces the first branch over a jump, where nothing else refers to that jump;
+/// `None` if there is no such branch. `place` gives the offset of a reference's target if the target is in
+/// this code; `targets` are the offsets that something refers to.
 pub fn edit(
     code: &Code,
     targets: &[u64],

@@ -1,4 +1,4 @@
-//! The code of one function: its instructions and their references.
+//! Code of one function: its instructions and their references.
 
 use crate::edit::Reference;
 use crate::instruction::{is_relative, is_two_words};
@@ -49,19 +49,20 @@ impl Code {
         is_valid.then_some(code)
     }
 
-    /// The reference of the instruction at an offset, in bytes; `None` if it has none.
+    /// Returns the reference of the instruction at an offset in bytes; `None` if the instruction has no reference.
     pub fn reference(&self, offset: u64) -> Option<&Reference> {
         self.references
             .iter()
             .find(|reference| reference.offset == offset)
     }
 
-    /// The first word of each instruction from an index on.
+    /// Returns the first word of each instruction from the instruction with this index on.
     pub fn words(&self, index: usize) -> impl Iterator<Item = u16> {
         self.instructions[index..].iter().map(|at| at.code)
     }
 
-    /// The offset in bytes of the instruction with this index; the end of the code beyond the last.
+    /// Returns the offset in bytes of the instruction with this index, or the size of the code if the index is
+    /// beyond the last instruction.
     pub fn offset(&self, index: usize) -> u64 {
         self.instructions
             .get(index)

@@ -1,4 +1,4 @@
-//! The replacement of a piece of code by a shorter one, and the new offset of everything else.
+//! Replacement of a piece of code by a shorter one, and the new offsets of the remaining code.
 
 use object::build::elf::SymbolId;
 use object::elf::RelocationType;
@@ -8,9 +8,9 @@ use object::elf::RelocationType;
 pub struct Reference {
     /// Bytes from the beginning of the code.
     pub offset: u64,
-    /// The form in which the linker fills it in.
+    /// The form in which the linker fills the address in.
     pub kind: RelocationType,
-    /// The symbol that it is counted from.
+    /// The symbol from which the address is counted.
     pub symbol: SymbolId,
     /// Bytes after the symbol.
     pub addend: i64,
@@ -25,7 +25,7 @@ pub struct Edit {
     pub remove: u64,
     /// The new code, in words.
     pub insert: Vec<u16>,
-    /// The references of the new code; offsets from its own beginning.
+    /// The references of the new code; their offsets count from the beginning of the new code.
     pub references: Vec<Reference>,
 }
 
@@ -38,12 +38,12 @@ impl Edit {
         self.insert.len() as u64 * 2
     }
 
-    /// The number of bytes that it saves.
+    /// Returns the number of bytes that the edit saves.
     pub fn gain(&self) -> i64 {
         self.remove as i64 - self.length() as i64
     }
 
-    /// True if an offset is inside: after its first byte and before its end.
+    /// True if an offset is inside the replaced bytes: after their first byte and before their end.
     pub fn covers(&self, offset: u64) -> bool {
         self.at < offset && offset < self.end()
     }
@@ -64,12 +64,12 @@ impl Edits {
         (apart && keep_targets).then_some(Self(edits))
     }
 
-    /// The number of bytes that they save.
+    /// Returns the number of bytes that the edits save.
     pub fn gain(&self) -> i64 {
         self.0.iter().map(Edit::gain).sum()
     }
 
-    /// The new offset of the code that was at `offset`.
+    /// Returns the new offset of the code that was at `offset`.
     pub fn new_offset(&self, offset: u64) -> u64 {
         let before = self
             .0
@@ -78,7 +78,7 @@ impl Edits {
         offset.wrapping_add_signed(-before.map(Edit::gain).sum::<i64>())
     }
 
-    /// The edited code.
+    /// Returns the edited code.
     pub fn bytes(&self, old: &[u8]) -> Vec<u8> {
         let mut new = Vec::with_capacity(old.len());
         let mut done = 0;
@@ -91,7 +91,7 @@ impl Edits {
         new
     }
 
-    /// The references of the edited code, at their new offsets; the addends are still the old ones.
+    /// Returns the references of the edited code, with new offsets but old addends.
     pub fn references(&self, old: &[Reference]) -> Vec<Reference> {
         let inside = |offset: u64| {
             let holds = |edit: &Edit| edit.at <= offset && offset < edit.end();

@@ -14,7 +14,7 @@
 //! out SPL, r28
 //! ```
 //!
-//! An epilogue is the same in reverse, then `ret`.
+//! An epilogue removes the room, pops the registers in reverse order, and returns (`ret`).
 //!
 //! The routines also change r26, r0 and the flags. By the calling convention of avr-gcc and LLVM a
 //! caller relies on none of these after a call and passes nothing in them: arguments are in
@@ -22,16 +22,16 @@
 //! any register that its callee happens not to change, so it must never be combined with this
 //! program. A test reads the flags in .cargo/config.toml.
 //!
-//! There are routines for a few lists of registers only. Where a function pushes exactly one of
+//! There are routines only for a few lists of registers. If a function pushes exactly one of
 //! these lists, the layout of the stack is unchanged at each point of its body. Otherwise the routine
-//! pushes more registers, so that arguments on the stack, those that fit
-//! into no register, are farther above the variables than the body assumes. That is
-//! done only where the body cannot notice: where it
+//! pushes more registers, so that the arguments on the stack, which fit into no register, are farther
+//! above the variables than the body assumes. Such a routine is used only if the body does not depend
+//! on the distance. That is so if the body
 //!
-//! - never has an address on the stack, because it has no variables there and does not use the
+//! - never uses an address on the stack, because it has no variables on the stack and does not use the
 //!   stack pointer; or
-//! - has addresses of variables only. Their distances from r28 are unchanged. It reads
-//!   and writes by Y+q within the room for them, or copies r28 and at once adds a distance within
+//! - uses only addresses of variables, whose distances from r28 are unchanged. The body reads
+//!   and writes by Y+q within the room for the variables, or copies r28 and at once adds a distance within
 //!   that room; and it uses r28 and r29 for nothing else. LLVM computes every address on the
 //!   stack from r28, so each access to an argument has a distance beyond the room.
 
@@ -50,10 +50,10 @@ const SAVED: [u8; 18] = [
     2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 28, 29,
 ];
 
-/// The lowest register of each routine.
+/// The lowest register that each pair of routines saves and restores.
 pub const FIRST_REGISTERS: [u8; 9] = [2, 4, 6, 8, 10, 12, 14, 16, 18];
 
-/// The routines of one of [`FIRST_REGISTERS`].
+/// The two routines for one of [`FIRST_REGISTERS`].
 #[derive(Debug, Clone, Copy)]
 pub struct Routines {
     /// `__frame_save_K`.
@@ -65,7 +65,7 @@ pub struct Routines {
 /// The stack frame of a function that has one of the known forms.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Frame {
-    /// The index in [`FIRST_REGISTERS`] of the routine that saves all its registers.
+    /// The index in [`FIRST_REGISTERS`] of the routine that saves all registers of the function.
     pub first: usize,
     /// The size of the variables, bytes.
     pub room: u8,
@@ -76,7 +76,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Recognizes the frame of a function; `None` if it has another form.
+    /// Recognizes the frame of a function; `None` if the frame has none of the known forms.
     pub fn of(code: &Code) -> Option<Self> {
         let registers: Vec<u8> = code.words(0).map_while(pushed_register).collect();
         let ascending = registers.windows(2).all(|pair| pair[0] < pair[1]);
@@ -127,7 +127,7 @@ impl Frame {
         })
     }
 
-    /// The edits that make the function use the shared routines.
+    /// Returns the edits that make the function use the shared routines.
     pub fn edits(&self, routines: Routines) -> Vec<Edit> {
         let replace = |at, remove, code, symbol| Edit {
             at,
@@ -150,7 +150,8 @@ impl Frame {
     }
 }
 
-/// The room that a prologue makes below the registers, and the number of instructions for it.
+/// Returns the room in bytes that a prologue makes below the registers, and the number of instructions that make
+/// it; `None` if no such instructions are at `index`.
 fn room(code: &Code, index: usize) -> Option<(u8, usize)> {
     let words: Vec<u16> = code.words(index).take(9).collect();
     let (down, rest) = words.strip_prefix(&READ_STACK_POINTER)?.split_first()?;
@@ -167,8 +168,8 @@ fn room(code: &Code, index: usize) -> Option<(u8, usize)> {
         .then_some((room as u8, count))
 }
 
-/// True if the instruction of an index uses the frame pointer only for the variables, from Y+1 to
-/// Y+room, or not at all.
+/// True if the instruction at an index uses the frame pointer only for the variables, from Y+1 to
+/// Y+room, or does not use it.
 fn is_local(code: &Code, index: usize, room: u8) -> bool {
     let words: Vec<u16> = code.words(index).take(3).collect();
     let distance = match *words.as_slice() {
@@ -200,8 +201,8 @@ fn is_local(code: &Code, index: usize, room: u8) -> bool {
     (1..=u16::from(room)).contains(&distance)
 }
 
-/// The number of instructions of the epilogue at an index, if it is there and matches the
-/// prologue.
+/// Returns the number of instructions of the epilogue at an index; `None` if no epilogue that matches the
+/// prologue begins there.
 fn epilogue_length(
     code: &Code,
     index: usize,

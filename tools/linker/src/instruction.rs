@@ -1,5 +1,5 @@
-//! The properties of an AVR instruction that matter here, from the AVR Instruction Set
-//! Manual.
+//! Properties of AVR instructions that decide how code may be edited, from the AVR Instruction
+//! Set Manual.
 
 /// The opcode of `ret`.
 pub const RET: u16 = 0x9508;
@@ -20,7 +20,7 @@ pub const fn is_two_words(code: u16) -> bool {
     code & 0xfe0f == 0x9000 || code & 0xfe0f == 0x9200 || code & 0xfe0c == 0x940c
 }
 
-/// The register that an instruction pushes, if it is a `push`.
+/// Returns the register that a `push` pushes; `None` for any other instruction.
 pub const fn pushed_register(code: u16) -> Option<u8> {
     if code & 0xfe0f == 0x920f {
         Some((code >> 4 & 0x1f) as u8)
@@ -29,7 +29,7 @@ pub const fn pushed_register(code: u16) -> Option<u8> {
     }
 }
 
-/// The register that an instruction pops, if it is a `pop`.
+/// Returns the register that a `pop` pops; `None` for any other instruction.
 pub const fn popped_register(code: u16) -> Option<u8> {
     if code & 0xfe0f == 0x900f {
         Some((code >> 4 & 0x1f) as u8)
@@ -38,13 +38,13 @@ pub const fn popped_register(code: u16) -> Option<u8> {
     }
 }
 
-/// The instruction `ldi r26, value`.
+/// Returns the instruction `ldi r26, value`.
 pub const fn encode_ldi_r26(value: u8) -> u16 {
     let value = value as u16;
     0xe0a0 | value << 4 & 0x0f00 | value & 0x0f
 }
 
-/// True if the target is relative to the instruction: a branch, `rjmp` or `rcall`.
+/// True for an instruction with a relative target: a branch, `rjmp` or `rcall`.
 pub const fn is_relative(code: u16) -> bool {
     is_branch(code) || code & 0xe000 == 0xc000
 }
@@ -106,8 +106,8 @@ pub fn may_use_frame_pointer(code: u16) -> bool {
     }
 }
 
-/// True if execution may continue after the last instruction of a function. It does not after a
-/// call: a compiler ends a function only with a call that never returns.
+/// True if execution may continue after this last instruction of a function. A call does not continue,
+/// since a compiler ends a function only with a call that never returns.
 pub const fn falls_through(code: u16) -> bool {
     let is_return = code == RET || code == RETI;
     let is_jump = is_rjmp(code) || code & 0xfe0e == JMP || code & 0xffef == 0x9409;

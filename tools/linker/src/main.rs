@@ -43,10 +43,10 @@ fn run() -> Result<ExitCode, String> {
     })
 }
 
-/// Writes the routines that a shortened object calls, and that object, next to the original.
-/// Returns the paths of both in this order; `None` for an argument that is not an object.
+/// Writes the routines that a shortened object calls, and the shortened object, next to the original.
+/// Returns their paths in this order; `None` for an argument that is not an object.
 fn write_shortened(path: &Path) -> Result<Option<[PathBuf; 2]>, String> {
-    // If a file cannot be read, avr-gcc reports that.
+    // If a file cannot be read, avr-gcc reports the error.
     let (true, Ok(file)) = (path.extension() == Some(OsStr::new("o")), fs::read(path)) else {
         return Ok(None);
     };
@@ -60,7 +60,7 @@ fn write_shortened(path: &Path) -> Result<Option<[PathBuf; 2]>, String> {
         Ok::<PathBuf, String>(path)
     };
     Ok(Some([
-        // First, so that they are placed after `.lowtext` and before the rest.
+        // The routines come first, so that they are placed after `.lowtext` and before the rest.
         write("frames.S", ROUTINES.as_bytes())?,
         write("short.o", &new)?,
     ]))

@@ -1,4 +1,4 @@
-//! An object file: finds its functions and writes the same file with shorter ones.
+//! Reader and writer of an object file: finds the functions, shortens them, and writes the new file.
 
 use std::fmt;
 
@@ -33,16 +33,16 @@ impl From<object::build::Error> for ShrinkError {
 /// The number of bytes saved by each kind of edit.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Savings {
-    /// Bytes saved by shared prologues and epilogues; the linker shortens most calls further.
+    /// Bytes saved by shared prologues and epilogues, before the linker shortens most of the new calls.
     pub frames: i64,
     /// Bytes saved by opposite branches.
     pub branches: i64,
-    /// Bytes saved by functions near those that call them, as far as that is known before linking.
+    /// Bytes saved by functions near their callers, as estimated before linking.
     pub calls: i64,
 }
 
-/// Makes the functions of an object file shorter; returns the new file and the savings, or `None` if
-/// it is not an ELF file. The new file refers to the routines of [`ROUTINES`](crate::ROUTINES).
+/// Shortens the functions of an object file and returns the new file and the savings; `None` if the
+/// file is not an ELF file. The new file refers to the routines of [`ROUTINES`](crate::ROUTINES).
 ///
 /// # Errors
 /// See [`ShrinkError`].
@@ -101,8 +101,8 @@ impl Object<'_> {
         FIRST_REGISTERS.iter().map(&mut of).collect()
     }
 
-    /// The sections that are one function each, in their order. Interrupt handlers and assembly
-    /// are not among them.
+    /// Returns the sections that hold one function each, in the order of the file, without interrupt
+    /// handlers and assembly.
     fn functions(&self) -> Vec<SectionId> {
         let is_function = |section: &&Section| {
             let mut functions = 0;
@@ -127,7 +127,7 @@ impl Object<'_> {
             .collect()
     }
 
-    /// The references of a section's bytes.
+    /// Returns the references of a section's bytes.
     fn references(&self, section: SectionId) -> Vec<Reference> {
         let mut references = Vec::new();
         for table in &self.0.sections {
@@ -158,18 +158,18 @@ impl Object<'_> {
         Code::read(&self.bytes(section), self.references(section))
     }
 
-    /// The offset of a symbol plus an addend; `None` if the symbol is in another section.
+    /// Returns the offset of a symbol plus an addend; `None` if the symbol is in another section.
     fn place(&self, section: SectionId, symbol: SymbolId, addend: i64) -> Option<u64> {
         let symbol = self.0.symbols.get(symbol);
         (symbol.section == Some(section)).then(|| symbol.st_value.wrapping_add_signed(addend))
     }
 
-    /// All offsets of a section that something refers to.
+    /// Returns all offsets of a section that something refers to.
     fn targets(&self, section: SectionId) -> Vec<u64> {
         self.targets_without(section, None)
     }
 
-    /// All offsets of a section that something refers to, except from the code that an edit replaces.
+    /// Returns all offsets of a section that something refers to, except the code that `edit` replaces.
     fn targets_without(&self, section: SectionId, edit: Option<&Edit>) -> Vec<u64> {
         let mut targets = Vec::new();
         for table in &self.0.sections {
@@ -187,7 +187,7 @@ impl Object<'_> {
         targets
     }
 
-    /// The edits of each function that gets shorter by shared prologues and epilogues.
+    /// Returns the edits of each function that gets shorter with shared prologues and epilogues.
     fn frames(&self, routines: &[Routines]) -> Vec<(SectionId, Edits)> {
         let edits = |section| {
             let frame = Frame::of(&self.code(section)?)?;
@@ -198,7 +198,7 @@ impl Object<'_> {
         self.functions().into_iter().filter_map(edits).collect()
     }
 
-    /// The next edit of a kind in a section.
+    /// Returns the next edit that `edit` finds in a section; `None` if it finds no edit.
     fn next<F>(&self, section: SectionId, edit: F) -> Option<Edits>
     where
         F: Fn(&Code, &[u64], &dyn Fn(&Reference) -> Option<u64>) -> Option<Edit>,
@@ -222,7 +222,7 @@ impl Object<'_> {
             .filter(|symbol| symbol.section == Some(section))
             .map(|symbol| (symbol.id(), symbol.st_value))
             .collect();
-        // An addend changes by the difference between the moves of its target and of its symbol.
+        // An addend changes by the difference between the shifts of its target and of its symbol.
         let addend = |symbol: SymbolId, addend: i64| {
             let value = values.iter().find(|(id, _)| *id == symbol);
             value.map_or(addend, |(_, value)| {
@@ -263,7 +263,7 @@ impl Object<'_> {
     }
 }
 
-/// The relocation of a reference.
+/// Returns the relocation for a reference.
 fn relocation(reference: &Reference) -> Relocation {
     Relocation {
         r_offset: reference.offset,

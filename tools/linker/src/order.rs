@@ -1,24 +1,24 @@
-//! The order of functions, chosen so that those that call one another are near one another.
+//! Search for an order of functions in which functions that call one another are near one another.
 //!
 //! A `call` has two words. If the target is less than 4 KB away, the linker turns it into
 //! an `rcall` of one word, and a `jmp` into an `rjmp` (`--relax`). A compiler writes
-//! functions in the order of its own work, and the routines of `frames.S`, which
-//! nearly all functions call, came last. So this module searches for the order in which the
-//! fewest calls are out of reach; each near call also saves a cycle. The order cannot
+//! functions in the order of its own work, and without a search the routines of `frames.S`, which
+//! nearly all functions call, would be far from most of them. So this module searches for the order in
+//! which the fewest calls are out of reach; each near call also saves a cycle. The order cannot
 //! change a program's behaviour: every reference from one function to another is a
 //! relocation, and no function falls through into the next.
 
 /// The reach of a relative call, bytes, less the error of the estimated sizes.
 const REACH: u32 = 4096 - 96;
 
-/// The cost of a call out of reach. Each byte beyond the reach costs 1 more, which only shows the
-/// search in which direction an order improves.
+/// The cost of a call out of reach. Each byte beyond the reach adds 1, only to show the search in which
+/// direction an order improves.
 const OUT_OF_REACH_COST: u32 = 16_384;
 
 /// The number of orders tried.
 const TRIES: u32 = 600_000;
 
-/// The rise of the cost that is accepted at first; it falls to 0 at the end.
+/// The rise of the cost that is accepted at first; the accepted rise falls to 0 during the search.
 const MAX_EXTRA_COST: u32 = 4 * OUT_OF_REACH_COST;
 
 /// The seed of the search; any number would do.
@@ -27,11 +27,11 @@ const SEED: u64 = 1;
 /// A call or a jump from one piece of code to another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Call {
-    /// The piece that contains it.
+    /// The piece that contains the call.
     pub from: usize,
     /// The offset in that piece, bytes.
     pub at: u32,
-    /// The piece that it leads to.
+    /// The piece that is called.
     pub to: usize,
 }
 
@@ -45,9 +45,9 @@ pub struct Pieces {
 }
 
 impl Pieces {
-    /// Searches for the order in which the fewest calls are out of reach. It moves pieces at
+    /// Searches for the order in which the fewest calls are out of reach. Moves pieces at
     /// random and undoes a move that raises the cost by more than a threshold, which falls to
-    /// zero (threshold accepting, Dueck and Scheuer 1990). It computes in integers, so that the
+    /// zero (threshold accepting, Dueck and Scheuer 1990). Computes in integers, so that the
     /// result is the same on every machine. The last piece stays the last.
     pub fn order(&self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.sizes.len()).collect();
@@ -75,21 +75,21 @@ impl Pieces {
         best
     }
 
-    /// The number of calls out of reach in an order.
+    /// Returns the number of calls out of reach in an order.
     pub fn far(&self, order: &[usize]) -> usize {
         self.bytes_beyond_reach(order)
             .filter(|beyond| *beyond > 0)
             .count()
     }
 
-    /// The cost of an order.
+    /// Returns the cost of an order.
     fn cost(&self, order: &[usize]) -> u64 {
         let far = self.bytes_beyond_reach(order).filter(|beyond| *beyond > 0);
         far.map(|beyond| u64::from(OUT_OF_REACH_COST + beyond))
             .sum()
     }
 
-    /// The number of bytes by which each call is out of reach; 0 within reach.
+    /// Returns the number of bytes by which each call is out of reach; 0 within reach.
     fn bytes_beyond_reach(&self, order: &[usize]) -> impl Iterator<Item = u32> {
         let mut places = vec![0; self.sizes.len()];
         let mut place = 0;
@@ -117,8 +117,8 @@ fn move_piece(order: &mut [usize], from: usize, to: usize) {
 mod tests {
     use super::*;
 
-    /// Ten pairs of pieces that call each other and are ten pieces apart, and one piece at the end
-    /// that the first calls.
+    /// Returns ten pairs of pieces, in each of which the first piece calls the second, ten pieces further on, and
+    /// one piece at the end that the first piece calls.
     fn pairs() -> Pieces {
         let mut pieces = Pieces {
             sizes: vec![700; 20],

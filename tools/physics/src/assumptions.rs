@@ -1,4 +1,4 @@
-//! Assumptions that the contact model cannot vary, and their effect in MuJoCo: the floor, the
+//! Assumptions that only MuJoCo can vary, not the contact model, and their effect: the floor, the
 //! printed shape of pads, the drive of an analog servo, the distribution of mass.
 
 use std::collections::BTreeMap;
@@ -14,17 +14,17 @@ use crate::mujoco::scene_of;
 use crate::surface::{self, Surface, Surfaces};
 use crate::table::Part;
 
-/// The gaits that are walked, the same as in `lizard gaits --assumptions`.
+/// The gaits that are walked, as in `lizard gaits --assumptions`.
 pub const GAITS: [&str; 5] = ["walk", "trot", "crawl", "left", "arc-left"];
 /// The least change that matters, percent.
 const MIN_CHANGE_PERCENT: f64 = 10.0;
 
-/// A change of the paper's robot.
+/// A changed assumption about the paper's robot or its floor.
 #[derive(Clone, Copy)]
 pub struct Assumption {
-    /// The assumption that is changed.
+    /// The changed assumption in words.
     pub words: &'static str,
-    /// A table of robot.toml, and keys that are added to it.
+    /// A line of robot.toml, and the lines that replace it.
     keys: Option<(&'static str, &'static str)>,
     /// The floor, if it is not level and even.
     surface: Option<Surface>,
@@ -39,7 +39,7 @@ const UNCHANGED: Assumption = Assumption {
 };
 
 impl Assumption {
-    /// All changes except the surfaces, which have a table of their own.
+    /// All changed assumptions except the surfaces, which have a table of their own.
     pub const ALL: [Self; 6] = [
         Self {
             words: "analog servos that drive in bursts",
@@ -75,7 +75,7 @@ impl Assumption {
         },
     ];
 
-    /// The paper's robot with this change.
+    /// Returns the paper's robot with this change.
     ///
     /// # Panics
     /// If robots/paper.toml does not have the table that is changed.
@@ -86,7 +86,7 @@ impl Assumption {
         }
     }
 
-    /// The scene of a gait's walk; `level` is the gait's displacement with the unchanged robot.
+    /// Returns the scene of a gait's walk; `level` is the gait's displacement with the unchanged robot.
     ///
     /// # Panics
     /// If the robot has no such gait.
@@ -100,7 +100,7 @@ impl Assumption {
     }
 }
 
-/// The paper's robot with a line of its file replaced.
+/// Returns the paper's robot with a line of its file replaced.
 fn paper_with(old: &str, new: &str) -> Robot {
     let text = std::fs::read_to_string(here().join("../../robots/paper.toml"));
     let text = text.expect("robots/paper.toml");
@@ -112,7 +112,7 @@ fn paper_with(old: &str, new: &str) -> Robot {
 /// MuJoCo's displacements by assumption and gait.
 pub type Assumptions = BTreeMap<String, BTreeMap<String, Displacement>>;
 
-/// The displacements stored in `assumptions.json`.
+/// Returns the displacements stored in `assumptions.json`.
 ///
 /// # Panics
 /// If `assumptions.json` is not a table of displacements.
@@ -120,8 +120,8 @@ pub fn stored() -> Assumptions {
     serde_json::from_str(include_str!("../assumptions.json")).expect("assumptions.json")
 }
 
-/// The changes of all gaits by the assumptions and by the surfaces, from the largest to the
-/// smallest, in percent of MuJoCo's displacement on a level floor.
+/// Returns a table of how the assumptions and the surfaces change each gait, in percent of MuJoCo's
+/// displacement on a level floor, from the largest change to the smallest.
 ///
 /// # Panics
 /// If a displacement is missing.

@@ -1,4 +1,4 @@
-//! The cases in which each gait is walked: the drive of the legs, and the length of the feet.
+//! Cases in which each gait is walked: the drive of the legs, and the length of the feet.
 
 use std::fmt;
 
@@ -28,7 +28,7 @@ impl Feet {
     /// All variants, in the order of the tables.
     pub const ALL: [Self; 3] = [Self::Level, Self::Stiff, Self::Soft];
 
-    /// The excess length of the front left foot, mm.
+    /// Returns the excess length of the front left foot, mm.
     pub fn excess_length(self) -> f64 {
         match self {
             Self::Level => 0.0,
@@ -37,7 +37,7 @@ impl Feet {
         }
     }
 
-    /// The stiffness of a foot on this robot, N/mm.
+    /// Returns the stiffness of a foot on this robot, N/mm.
     pub fn stiffness(self, robot: &Robot) -> f64 {
         match self {
             Self::Stiff => 2.0,
@@ -56,7 +56,7 @@ pub struct Case {
 }
 
 impl Case {
-    /// All cases in the order of the tables. Legs on struts with springs walk as rigid ones do, so one
+    /// All cases in the order of the tables. Legs on struts with springs walk like rigid legs, so one
     /// case of a long foot is enough for them.
     pub const ALL: [Self; 5] = {
         const fn case(legs: Legs, feet: Feet) -> Case {
@@ -71,8 +71,8 @@ impl Case {
         ]
     };
 
-    /// The input of the contact model: the robot on pads whose friction is equal in all
-    /// directions, as in the engine.
+    /// Returns the input of the contact model: the robot on pads whose friction is equal in all
+    /// directions, as in MuJoCo.
     pub fn ground(self, robot: &Robot) -> Ground {
         Ground {
             stance: Stance {

@@ -1,5 +1,5 @@
-//! The place of an edge on the path of a gait. Before the measured cycles all feet are on one side
-//! of it, and afterwards on the other, so that front and hind feet have climbed it.
+//! Placement of an edge on the path of a gait. Before the measured cycles, all feet are on one side of
+//! the edge, and afterwards on the other, so that front and hind feet have climbed it.
 
 use lizard_parts::Block;
 use lizard_robot::{Place, Robot, Travel};
@@ -11,7 +11,7 @@ use crate::table::Part;
 /// The distance of the nearest foot from the edge before and after the measured cycles, mm: feet
 /// swing by 15 mm, and a dome touches an edge 2 mm high while its middle is 11 mm away.
 const CLEARANCE: f64 = 25.0;
-/// The angle after which a gait that turns on the spot has brought other feet to the edge, deg.
+/// The turn after which the measurement of a gait that turns on the spot ends, deg: other feet are at the edge then.
 const MAX_TURN: f64 = 180.0;
 
 /// An edge across the path of a gait, and the cycles in which it is crossed.
@@ -21,14 +21,14 @@ pub struct Crossing {
     pub cycles: u32,
     /// True if all feet pass the edge; false for a gait that turns on the spot.
     pub passes: bool,
-    /// The direction in which the floor rises, deg counter-clockwise from ahead.
+    /// The direction across the edge, in which the floor rises, deg counter-clockwise from ahead.
     heading: f64,
     /// The distance of the edge from the robot's place at the start, mm.
     distance: f64,
 }
 
 impl Crossing {
-    /// The crossing of a gait with this displacement by a cycle, after some cycles that are not
+    /// Finds the crossing of a gait with this displacement in one cycle, after some cycles that are not
     /// measured.
     pub fn of(robot: &Robot, by_cycle: Displacement, unmeasured: u32) -> Self {
         let feet = robot.ground().feet.positions([0.0; 4]);
@@ -52,7 +52,7 @@ impl Crossing {
             } else {
                 direction_from(end, begin)
             };
-            // A foot that stands ahead at the beginning may be behind at the end of an arc.
+            // Takes the extreme of all feet, since a foot that is ahead at the beginning may be behind after an arc.
             let distance = along(begin, heading).into_iter().fold(f64::MIN, f64::max) + CLEARANCE;
             let last = along(end, heading).into_iter().fold(f64::MAX, f64::min);
             let passes = last > distance + CLEARANCE;
@@ -68,9 +68,9 @@ impl Crossing {
         unreachable!("every gait that is walked moves")
     }
 
-    /// The block that forms the floor beyond the edge.
+    /// Returns the block, `high` mm high, that forms the floor beyond the edge.
     pub fn block(&self, high: f64) -> Block {
-        /// The size of that floor, mm.
+        /// The size of the block, mm.
         const SIZE: f64 = 1000.0;
         let (sin, cos) = self.heading.to_radians().sin_cos();
         let middle = self.distance + SIZE / 2.0;
@@ -82,12 +82,12 @@ impl Crossing {
     }
 }
 
-/// The feet at a place on the floor.
+/// Returns the positions of the feet of a robot at a place on the floor.
 fn feet_at(place: Place, feet: [[f64; 2]; 4]) -> [[f64; 2]; 4] {
     feet.map(|foot| place.on_floor(foot))
 }
 
-/// The direction of a place from another one, deg counter-clockwise from ahead.
+/// Returns the direction of a place from another place, deg counter-clockwise from ahead.
 fn direction_from(place: Place, other: Place) -> f64 {
     let offset = [place.left - other.left, place.forward - other.forward];
     offset[0].atan2(offset[1]).to_degrees()

@@ -1,11 +1,11 @@
-//! The expected results of trials with a real robot, each with the key of robot.toml for the
-//! measured result.
+//! Table of the expected results of trials with a real robot, each with the key of robot.toml that takes
+//! the measured result.
 
 use std::fmt::Write as _;
 
 use lizard_robot::{CheckedGait, Effort, GRAVITY, HIGH_LINE_SHARE, Robot, ServoType};
 
-/// The table in `docs/measure.md`.
+/// Returns the table in `docs/measure.md`.
 pub fn expected(robot: &Robot) -> String {
     let ground = robot.ground();
     let load = ground.body.mean_load();
@@ -143,7 +143,7 @@ pub fn expected(robot: &Robot) -> String {
 struct HardestGait<'a> {
     robot: &'a Robot,
     gait: &'a CheckedGait,
-    /// Its largest share of a servo's torque-speed line.
+    /// The largest share of a servo's torque-speed line that the gait uses.
     line: f64,
 }
 
@@ -161,8 +161,8 @@ impl<'a> HardestGait<'a> {
         Effort::of(gait, robot.ground(), &motors).line_share(1.0, 1.0)
     }
 
-    /// The value of a servo's key at which its torque-speed line is nearly used up, within a factor
-    /// of four of its own value.
+    /// Returns the value of a servo's key at which the gait nearly uses up the servo's torque-speed line. The search
+    /// stays within a factor of four of `own`, the servo's own value; `servo` makes the servo with another value.
     fn limit(&self, own: f64, servo: impl Fn(f64) -> ServoType) -> f64 {
         let does = |value: f64| Self::line(self.robot, self.gait, &servo(value)) <= HIGH_LINE_SHARE;
         let mut good = own;

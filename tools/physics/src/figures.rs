@@ -1,4 +1,4 @@
-//! Displacements that the contact model and MuJoCo gave in their last run.
+//! Stored displacements that the contact model and MuJoCo gave in their last run.
 
 use std::collections::BTreeMap;
 
@@ -7,12 +7,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::case::{Case, Feet};
 
-/// The displacement by a cycle: mm forward, mm to the left, deg counter-clockwise; two decimals.
+/// A displacement in one cycle: mm forward, mm to the left, deg counter-clockwise; two decimals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Displacement(pub [f64; 3]);
 
 impl Displacement {
-    /// The distance to another displacement, mm, and the difference of the turns, deg.
+    /// Returns the distance to another displacement, mm, and the difference of the turns, deg.
     pub fn distance_to(&self, other: &Self) -> (f64, f64) {
         let [a, b] = [self.0, other.0];
         ((a[0] - b[0]).hypot(a[1] - b[1]), (a[2] - b[2]).abs())
@@ -32,29 +32,30 @@ impl From<Travel> for Displacement {
     }
 }
 
-/// The displacements by a cycle, as the contact model and MuJoCo compute them.
+/// The displacements in one cycle that the contact model and MuJoCo compute.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Answers {
-    /// The contact model's; `None` where two feet pull against the other two, so that the
+    /// The contact model's displacement; `None` if two feet pull against the other two, so that the
     /// smallest difference between the pads decides.
     pub model: Option<Displacement>,
-    /// MuJoCo's, for the robot as `lizard model` writes it.
+    /// MuJoCo's displacement, for the robot as `lizard model` writes it.
     pub mujoco: Displacement,
 }
 
-/// Allowed differences between MuJoCo and the model: mm or, if more, a share of the distance; and
-/// deg. `LEVEL` is for level feet, the others for one foot too long: `SOFT` on soft leaves, `STIFF`
-/// on stiff ones, where a few hundredths of a mm decide which feet hold.
+/// Allowed differences between MuJoCo and the model: mm or, if larger, a share of the distance; and
+/// deg. `LEVEL` is for level feet, `SOFT` and `STIFF` for one foot too long: on soft leaves, and on
+/// stiff leaves, where a few hundredths of a mm decide which feet stick.
 const LEVEL: (f64, f64, f64) = (1.5, 0.08, 1.0);
 const SOFT: (f64, f64, f64) = (2.5, 0.08, 1.5);
 const STIFF: (f64, f64, f64) = (5.0, 0.35, 4.0);
-/// If a gait moves less than this in the model, mm and deg, MuJoCo may differ by `CREEPS` mm: it
-/// moves nearly equally fast in both directions, so that inertia decides.
+/// If a gait moves less than this in the model, mm and deg, MuJoCo may differ by
+/// [`STANDSTILL_TOLERANCE_MM`]: the robot moves nearly equally fast in both directions, so that
+/// inertia decides.
 const NOWHERE: (f64, f64) = (1.0, 0.5);
 const STANDSTILL_TOLERANCE_MM: f64 = 3.5;
 
 impl Answers {
-    /// The allowed difference between MuJoCo and the model, mm and deg.
+    /// Returns the allowed difference between MuJoCo and the model, mm and deg.
     pub fn bound(&self, case: Case) -> (f64, f64) {
         let (mm, share, deg) = match case.feet {
             Feet::Level => LEVEL,
@@ -69,7 +70,8 @@ impl Answers {
         }
     }
 
-    /// The message for a difference beyond the allowed one; `None` if there is none.
+    /// Returns a message if MuJoCo and the model differ by more than allowed; otherwise, or if the model has no
+    /// displacement, `None`.
     pub fn disagreement(&self, case: Case) -> Option<String> {
         let (error, turned) = self.mujoco.distance_to(&self.model?);
         let (mm, deg) = self.bound(case);
@@ -81,13 +83,13 @@ impl Answers {
     }
 }
 
-/// The answers for each robot and gait, by the case's name.
+/// The answers by robot, gait and case.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Figures(BTreeMap<String, BTreeMap<String, BTreeMap<String, Answers>>>);
 
 impl Figures {
-    /// The figures stored in `figures.json`.
+    /// Returns the figures stored in `figures.json`.
     ///
     /// # Panics
     /// If `figures.json` is not as [`Figures::text`] makes it.
@@ -95,7 +97,7 @@ impl Figures {
         serde_json::from_str(include_str!("../figures.json")).expect("figures.json")
     }
 
-    /// The text of `figures.json`: a line for each walk.
+    /// Returns the text of `figures.json`: a line for each walk.
     ///
     /// # Panics
     /// Never: names and numbers can always be written as JSON.
@@ -114,7 +116,7 @@ impl Figures {
         block(robots.collect()) + "\n"
     }
 
-    /// The answers for a robot's gait in a case.
+    /// Returns the answers for a robot's gait in a case; `None` if none are stored.
     pub fn get(&self, robot: &str, gait: &str, case: Case) -> Option<&Answers> {
         self.0.get(robot)?.get(gait)?.get(&case.to_string())
     }
@@ -126,7 +128,7 @@ impl Figures {
         cases.insert(case.to_string(), answers);
     }
 
-    /// The number of walks.
+    /// Returns the number of walks.
     pub fn count(&self) -> usize {
         let gaits = self.0.values().flat_map(BTreeMap::values);
         gaits.map(BTreeMap::len).sum()

@@ -1,5 +1,5 @@
-//! Pads with a grain, which grip more backward than forward. Compares the speeds that the model and
-//! MuJoCo give the gaits of `robots/grain.toml` at five ratios of friction.
+//! Comparison of the contact model and MuJoCo on pads with a grain, which grip more backward than forward: the
+//! speeds of the gaits of `robots/grain.toml` at five ratios of friction.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -25,12 +25,12 @@ pub const GAITS: [(&str, bool); 5] = [
     ("left", true),
     ("arc-left", false),
 ];
-/// Largest ratio at which a gait against the grain has to agree. Above it the pushing pads have
-/// barely more grip than the returning one, so the result depends on inertia, which the model
-/// ignores.
+/// Largest ratio at which model and MuJoCo have to agree on a gait against the grain. Above this ratio, the
+/// pushing pads have barely more grip than the returning one, so the result depends on inertia, which the
+/// model ignores.
 const MAX_RATIO_AGAINST: f64 = 1.5;
 /// The allowed difference between MuJoCo and the model in a cycle. For the distance, the larger
-/// of its two bounds counts.
+/// of the bounds `mm` and `share` counts.
 struct Bound {
     mm: f64,
     /// Share of the model's distance.
@@ -43,14 +43,14 @@ const BOUND: Bound = Bound {
     share: 0.2,
     deg: 2.0,
 };
-/// Time until a gait repeats from cycle to cycle, s: it starts from rest and has to bring the body
-/// to its speed first.
+/// Time until the motion repeats from cycle to cycle, s, since a gait has to bring the body from rest to its
+/// speed first.
 const SETTLING_S: f64 = 1.5;
 
 /// The answers by gait, in the order of [`RATIOS`].
 pub type Grains = BTreeMap<String, Vec<Answers>>;
 
-/// The figures stored in `grains.json`.
+/// Returns the answers stored in `grains.json`.
 ///
 /// # Panics
 /// If `grains.json` is not as [`text`] makes it.
@@ -58,10 +58,10 @@ pub fn stored() -> Grains {
     serde_json::from_str(include_str!("../grains.json")).expect("grains.json")
 }
 
-/// The text of `grains.json`: a line for each walk.
+/// Returns the text of `grains.json`: a line for each walk.
 ///
 /// # Panics
-/// Never: they are names and numbers.
+/// Never: names and numbers can always be written as JSON.
 pub fn text(grains: &Grains) -> String {
     let gaits = grains.iter().map(|(gait, answers)| {
         let lines = answers
@@ -72,8 +72,8 @@ pub fn text(grains: &Grains) -> String {
     format!("{{\n{}\n}}\n", gaits.collect::<Vec<_>>().join(",\n"))
 }
 
-/// The model's answer for level feet; `None` where it depends on a tie (two feet
-/// against two).
+/// Returns the model's displacement with level feet; `None` if two feet pull against the other two, so
+/// that the model cannot decide.
 pub fn model(robot: &Robot, gait: &CheckedGait, ratio: f64) -> Option<Displacement> {
     let ground = Ground {
         stance: Stance {
@@ -87,7 +87,7 @@ pub fn model(robot: &Robot, gait: &CheckedGait, ratio: f64) -> Option<Displaceme
     decided.then(|| gait.simulate_cycle(&ground).travel.into())
 }
 
-/// The answers of model and MuJoCo for every gait and ratio.
+/// Computes the answers of the model and MuJoCo for every gait and ratio.
 ///
 /// # Errors
 /// Fails if MuJoCo gives no answer.
@@ -118,12 +118,12 @@ pub fn measure(robot: &Robot) -> Result<Grains, MujocoError> {
     Ok(grains.collect())
 }
 
-/// The number of cycles until a gait repeats from cycle to cycle.
+/// Returns the number of cycles after which a gait's motion repeats from cycle to cycle.
 pub(crate) fn settling(gait: &CheckedGait) -> u32 {
     (SETTLING_S / gait.period()).ceil() as u32
 }
 
-/// The answers of a gait at the ratio of the robot's file.
+/// Returns the answers of a gait at the ratio in the robot's file.
 pub(crate) fn at_own_ratio(answers: &[Answers]) -> Answers {
     let own = crate::robot(ROBOT).ground().ratio;
     let index = RATIOS.iter().position(|ratio| *ratio == own);
@@ -142,7 +142,7 @@ fn scene(name: String, assembly: &Assembly, gait: &CheckedGait, ratio: f64) -> S
     }
 }
 
-/// The messages for answers of MuJoCo that are too far from the model's.
+/// Returns a message for each answer of MuJoCo that is too far from the model's.
 pub fn disagreements(grains: &Grains) -> Vec<String> {
     let mut words = Vec::new();
     for (gait, against) in GAITS {
@@ -162,7 +162,7 @@ pub fn disagreements(grains: &Grains) -> Vec<String> {
     words
 }
 
-/// The speeds as a table: the model's and MuJoCo's, mm/s ahead and deg/s counter-clockwise.
+/// Returns a table of the model's and MuJoCo's speeds, mm/s ahead and deg/s counter-clockwise.
 ///
 /// # Panics
 /// If a gait is missing.

@@ -1,13 +1,13 @@
-//! Compares the contact model with MuJoCo, a physics engine of other authors.
+//! Comparison of the contact model with MuJoCo, a physics engine of other authors.
 //!
 //! Every prediction of a path over the floor comes from this project's own contact model.
 //! A fault of that model would affect every table, the page and the choice of gaits. So
 //! MuJoCo, which does not use the model, walks the same gaits with the robot as `lizard model`
 //! writes it.
 //!
-//! `make physics` runs it (`mujoco`), compares it with the model and with the figures in
-//! `figures.json`, and prints all of it. The tables of the documentation are made from the
-//! stored figures ([`Figures`], [`table`]), so a test without the engine keeps them current.
+//! `make physics` runs MuJoCo ([`mujoco`]), compares its displacements with the model's and with the
+//! stored ones in `figures.json`, and prints them all. The tables of the documentation are made from the
+//! stored figures ([`Figures`], [`table`]), so a test without MuJoCo keeps them current.
 
 pub mod assumptions;
 mod case;
@@ -34,19 +34,19 @@ use std::path::PathBuf;
 
 use lizard_robot::Robot;
 
-/// The files of robots/ that are compared, by their names without an ending; grains have a table of their own.
+/// The files of robots/ that are compared, without their extension. `grain` has a table of its own ([`grains`]).
 pub const ROBOTS: [&str; 4] = ["paper", "own-gaits", "large", "unequal"];
 
-/// Loads a file of robots/ by its name without an ending.
+/// Loads a file of robots/ by its name without the extension.
 ///
 /// # Panics
-/// If its file is refused; tests of the robot crate show that none is.
+/// If the file is missing or refused; tests of the robot crate show that every file is valid.
 pub fn robot(name: &str) -> Robot {
     let file = here().join(format!("../../robots/{name}.toml"));
     Robot::load(file).expect(name)
 }
 
-/// The folder of this crate.
+/// Returns the folder of this crate.
 pub fn here() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }

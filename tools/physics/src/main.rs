@@ -1,7 +1,7 @@
 //! `make physics`: walks every gait of the robots of robots/ by the contact model and by MuJoCo.
-//! MuJoCo alone also walks over edges and blocks, with the paper's robot also on slopes and other
+//! MuJoCo alone also walks the robots over edges and blocks, and the paper's robot on slopes and other
 //! floors. With `--write` the new results replace the stored ones; with `--one-in N` only every N-th
-//! gait is walked.
+//! walk is done.
 
 use std::collections::BTreeMap;
 use std::process::ExitCode;
@@ -17,12 +17,12 @@ use lizard_physics::text::{blocks, lines};
 use lizard_physics::{Answers, Displacement, Figures, Legs, ROBOTS, Row, here, robot, rows, table};
 use lizard_robot::Robot;
 
-/// A difference from the stored answer, mm and deg, beyond which the model, the engine or the robot
-/// must have changed.
+/// Largest difference from the stored displacement, mm and deg, without a change of the model, MuJoCo or the
+/// robot.
 const TOLERANCES: (f64, f64) = (0.6, 0.4);
-/// The message for an answer without a stored one to compare.
+/// The message for an answer that cannot be compared because none is stored for its walk.
 const NOT_KEPT: &str = "no figures are kept; `make physics WRITE=1` keeps these";
-/// The prefixes of file names of walks on other floors, with other servos, assumptions and pads.
+/// The prefixes of the names of walks on other floors, with other servos, assumptions and pads.
 const SURFACE: &str = "surface";
 const SERVOS: &str = "servos";
 const ASSUMPTIONS: &str = "assumptions";
@@ -58,13 +58,13 @@ fn main() -> ExitCode {
     }
 }
 
-/// The name of the file for a row of a robot.
+/// Returns the name of a walk, by which its file is written and its answer is found.
 fn name(robot: &str, index: usize) -> String {
     format!("{robot}-{index}")
 }
 
-/// Walks every `one_in`-th gait, or with `None` all gaits, and stores their answers. Returns the
-/// faults.
+/// Does every `one_in`-th walk and compares the answers with the stored ones; with `None`, does all walks
+/// and stores their answers. Returns a message for each fault.
 fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     let (write, one_in) = (one_in.is_none(), one_in.unwrap_or(1));
     let robots: Vec<(&str, Robot)> = ROBOTS.map(|name| (name, robot(name))).into();
@@ -223,7 +223,7 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         faults.extend(describe_displacement_changes(&pads::stored(), &by_shape));
     }
     let pads = robot(grains::ROBOT);
-    // With `--one-in`, which saves time, these are left out.
+    // With `--one-in`, which saves time, the pads with a grain are left out.
     if one_in == 1 {
         let walked = grains::measure(&pads)?;
         println!("\nrobots/grain.toml\n{}", grains::table(&pads, &walked));
@@ -277,7 +277,7 @@ impl UnevenWalk {
     }
 }
 
-/// The messages for answers on pads with a grain that differ from the stored ones.
+/// Returns a message for each answer on pads with a grain that differs from the stored one.
 fn describe_grain_changes(kept: &Grains, now: &Grains) -> Vec<String> {
     let each = now.iter().flat_map(|(gait, answers)| {
         let kept = kept.get(gait).map_or(&[][..], Vec::as_slice);
@@ -291,10 +291,10 @@ fn describe_grain_changes(kept: &Grains, now: &Grains) -> Vec<String> {
     each.collect()
 }
 
-/// Displacements by two names.
+/// Displacements by group and name: by assumption and gait, or by pad shape and surface.
 type Named = BTreeMap<String, BTreeMap<String, Displacement>>;
 
-/// The messages for displacements by two names that differ from the stored ones.
+/// Returns a message for each displacement that differs from the stored one.
 fn describe_displacement_changes(stored: &Named, now: &Named) -> Vec<String> {
     let all = now
         .iter()
@@ -309,12 +309,12 @@ fn describe_displacement_changes(stored: &Named, now: &Named) -> Vec<String> {
     words.collect()
 }
 
-/// The messages for answers that differ from the stored ones.
+/// Returns a message for each answer that differs from the stored one, the model's and MuJoCo's.
 fn describe_changes(kept: Option<&Answers>, now: &Answers) -> Vec<String> {
     let Some(before) = kept else {
         return vec![NOT_KEPT.to_owned()];
     };
-    // Results that depend on ties differ between machines.
+    // If two feet pull against two, the model has no answer, and MuJoCo's differs between machines.
     let (Some(was), Some(is)) = (before.model, now.model) else {
         return Vec::new();
     };
@@ -328,7 +328,7 @@ fn describe_changes(kept: Option<&Answers>, now: &Answers) -> Vec<String> {
         .collect()
 }
 
-/// The message for an answer that differs from the stored one.
+/// Returns a message if a displacement differs from the stored one by more than [`TOLERANCES`].
 fn describe_difference(who: &str, before: Displacement, now: Displacement) -> Option<String> {
     let (mm, deg) = before.distance_to(&now);
     (mm > TOLERANCES.0 || deg > TOLERANCES.1).then(|| {

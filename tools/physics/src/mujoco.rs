@@ -1,5 +1,5 @@
-//! MuJoCo, used through its Python package: `tools/physics/judge.py` walks the files of a
-//! folder.
+//! Interface to MuJoCo through its Python package: the judge, `tools/physics/judge.py`, simulates the
+//! walks in the files of a folder.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -25,7 +25,7 @@ pub enum MujocoError {
     /// The judge ended early.
     #[error("tools/physics/judge.py ended with {0}")]
     Ended(std::process::ExitStatus),
-    /// The judge printed something else than an answer.
+    /// The judge printed something other than an answer.
     #[error("tools/physics/judge.py says {0}")]
     Words(String),
     /// MuJoCo warned during a walk.
@@ -49,7 +49,7 @@ struct Line {
     trouble: Option<String>,
 }
 
-/// Files with walks for the judge.
+/// A folder of files with walks for the judge.
 pub struct Jobs {
     folder: TempDir,
     count: usize,
@@ -73,7 +73,7 @@ impl Jobs {
         })
     }
 
-    /// The number of walks.
+    /// Returns the number of walks.
     pub fn count(&self) -> usize {
         self.count
     }
@@ -122,7 +122,7 @@ impl Jobs {
     }
 }
 
-/// The scene of the second cycle of a gait.
+/// Returns the scene of two cycles of a gait, of which the second is measured.
 pub(crate) fn scene_of(name: &str, assembly: &Assembly, gait: &str, case: Case) -> Scene {
     let robot = assembly.robot();
     let gait = robot.gait(gait).expect("it is the robot's");
@@ -131,14 +131,14 @@ pub(crate) fn scene_of(name: &str, assembly: &Assembly, gait: &str, case: Case) 
         name: name.to_owned(),
         long: [case.feet.excess_length(), 0.0, 0.0, 0.0],
         stiffness: case.feet.stiffness(robot),
-        // As in `Case::ground`; `grains.rs` is for other pads.
+        // Friction is equal in all directions, as in `Case::ground`; `grains.rs` is for other pads.
         ratio: 1.0,
         pull: (case.legs == Legs::Strut).then_some(Pull {
             force: strut.force,
             rate: strut.rate,
         }),
         course: Some(Course::of(robot, gait, 2, 1)),
-        // They are only for pictures; MuJoCo reads the file ten times as fast without them.
+        // Shapes are only for pictures; MuJoCo reads the file ten times as fast without them.
         shapes: false,
         ..Scene::of(assembly)
     }

@@ -28,7 +28,7 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// All pads, in the order of the table.
+    /// All shapes, in the order of the table.
     pub const ALL: [Self; 7] = [
         Self::Flat,
         Self::Dome(5),
@@ -39,7 +39,7 @@ impl Shape {
         Self::Dome(30),
     ];
 
-    /// The name in the table.
+    /// Returns the shape's name in the table.
     pub fn name(self) -> String {
         match self {
             Self::Flat => "flat, 8 mm wide".to_owned(),
@@ -47,7 +47,7 @@ impl Shape {
         }
     }
 
-    /// The scene of a walk; `level` is the gait's displacement on a level floor.
+    /// Returns the scene of a walk; `level` is the gait's displacement on a level floor.
     pub fn scene(
         self,
         name: &str,
@@ -67,7 +67,7 @@ impl Shape {
 /// MuJoCo's displacements by shape and surface.
 pub type Shapes = BTreeMap<String, BTreeMap<String, Displacement>>;
 
-/// The displacements stored in `pads.json`.
+/// Returns the displacements stored in `pads.json`.
 ///
 /// # Panics
 /// If `pads.json` is not a table of displacements.
@@ -75,7 +75,7 @@ pub fn stored() -> Shapes {
     serde_json::from_str(include_str!("../pads.json")).expect("pads.json")
 }
 
-/// The table in Markdown, mm forward per cycle; a dash where a walk is missing.
+/// Returns the table in Markdown, mm forward per cycle, with a dash where a walk is missing.
 pub fn table(shapes: &Shapes) -> String {
     let heads = SURFACES.map(|surface| format!(" {surface} |")).concat();
     let mut text = format!(

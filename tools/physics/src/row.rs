@@ -1,4 +1,4 @@
-//! The gaits that are walked, each in its cases.
+//! List of the gaits that are walked, each in its cases.
 
 use lizard_parts::{Assembly, Scene};
 use lizard_robot::{CheckedGait, Robot};
@@ -12,20 +12,20 @@ use crate::mujoco::scene_of;
 pub struct Row {
     /// The gait's name.
     pub gait: String,
-    /// The legs and feet.
+    /// The case in which the gait is walked.
     pub case: Case,
-    /// True if the gait does not depend on ties, so that the contact model has an answer.
+    /// True if the contact model has an answer, since at no time two feet pull against the other two.
     pub is_decided: bool,
 }
 
 impl Row {
-    /// The scene for MuJoCo under a name, and its legs.
+    /// Returns the scene for MuJoCo under a name, and the scene's legs.
     pub fn scene(&self, name: &str, assembly: &Assembly) -> (Legs, Scene) {
         let scene = scene_of(name, assembly, &self.gait, self.case);
         (self.case.legs, scene)
     }
 
-    /// The contact model's answer.
+    /// Returns the contact model's displacement; `None` if the model has no answer.
     ///
     /// # Panics
     /// If the robot has no such gait.
@@ -36,8 +36,8 @@ impl Row {
     }
 }
 
-/// Every gait of a robot that moves, in every case; a gait that depends on ties in the first case
-/// only.
+/// Returns every gait of a robot that moves, in every case. A gait on which the contact model cannot decide
+/// has only the first case.
 pub fn rows(robot: &Robot) -> Vec<Row> {
     let gaits = robot.gaits().iter().filter(|gait| gait.moves());
     gaits.flat_map(|gait| rows_of(robot, gait)).collect()

@@ -1,5 +1,5 @@
-//! Gaits with servos that lag behind their pulses: the contact model with motors, compared with
-//! MuJoCo and the motors that `lizard model` writes. Neither has a dead band here.
+//! Comparison of gaits with servos that lag behind their pulses: the contact model with motors, and
+//! MuJoCo with the motors that `lizard model` writes. The servos have no dead band here.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -24,7 +24,7 @@ pub struct Variant {
     /// Lines for the tables `[servo]` and, in `joints`, `[joints]` of robot.toml.
     servo: &'static str,
     joints: &'static str,
-    /// Friction of each pin of MuJoCo's robot, N mm, instead of the model's `drag`.
+    /// Friction of each pin of MuJoCo's robot, N mm, in place of `drag`; `None` keeps `drag`.
     pins: Option<f64>,
     /// Additional mass, g.
     extra_mass: f64,
@@ -64,7 +64,7 @@ impl Variant {
         Self {
             name: "the same, but 3 N mm in each pin of MuJoCo's robot",
             pins: Some(3.0),
-            // The pins of head and tail turn if one leg swings alone; without them it is 6 %.
+            // The pins of head and tail turn if one leg swings alone; without their friction, the error is 6 %.
             exceptions: &[("crawl", 0.17)],
             ..STIFF
         },
@@ -117,7 +117,7 @@ impl Variant {
         Robot::parse(&text).expect(self.name)
     }
 
-    /// MuJoCo's scene of two cycles of a gait, of which the second is measured.
+    /// Returns MuJoCo's scene of two cycles of a gait, of which the second is measured.
     ///
     /// # Panics
     /// If the robot has no such gait.
@@ -135,7 +135,7 @@ impl Variant {
         scene
     }
 
-    /// The displacement of a gait's second cycle by the contact model.
+    /// Returns the displacement of a gait's second cycle by the contact model.
     ///
     /// # Panics
     /// If the robot has no such gait.
@@ -145,13 +145,13 @@ impl Variant {
         gait.driven(robot.ground(), &robot.motors(), 1.0).into()
     }
 
-    /// The share by which the model may differ from MuJoCo in a gait.
+    /// Returns the share by which the model may differ from MuJoCo in a gait.
     fn allowed(&self, gait: &str) -> f64 {
         let further = self.exceptions.iter().find(|(of, _)| *of == gait);
         further.map_or(ALLOWED, |(_, share)| *share)
     }
 
-    /// The message for a gait in which the model differs from MuJoCo too much.
+    /// Returns a message if the model differs from MuJoCo too much in a gait.
     pub fn disagreement(&self, gait: &str, answers: &Answers) -> Option<String> {
         let (_, part) = GAITS.into_iter().find(|(name, _)| *name == gait)?;
         let [model, mujoco] =
@@ -167,7 +167,7 @@ impl Variant {
 /// The answers by variant and gait.
 pub type Servos = BTreeMap<String, BTreeMap<String, Answers>>;
 
-/// The figures stored in `servos.json`.
+/// Returns the answers stored in `servos.json`.
 ///
 /// # Panics
 /// If `servos.json` is not as [`text`] makes it.
@@ -175,7 +175,7 @@ pub fn stored() -> Servos {
     serde_json::from_str(include_str!("../servos.json")).expect("servos.json")
 }
 
-/// The text of `servos.json`: a line for each gait of a variant.
+/// Returns the text of `servos.json`: a line for each gait of a variant.
 ///
 /// # Panics
 /// Never: names and numbers can always be serialized.
@@ -195,7 +195,7 @@ pub fn text(servos: &Servos) -> String {
     format!("{{\n{}\n}}\n", variants.collect::<Vec<_>>().join(",\n"))
 }
 
-/// The table of all variants, as Markdown; a dash where an answer is missing.
+/// Returns the table of all variants in Markdown, with a dash where an answer is missing.
 pub fn servos_table(servos: &Servos) -> String {
     let heads = GAITS.map(|(gait, part)| {
         let unit = if part == 2 { "deg" } else { "mm" };

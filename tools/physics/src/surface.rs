@@ -1,7 +1,7 @@
 //! Floors that are not level, even and clean, and the walks on them.
 //!
-//! The contact model knows one floor. Only the engine predicts the effect of a tile's edge, crumbs
-//! or a slope: no foot is lifted, so a pad that is pushed against an edge has to climb it.
+//! The contact model knows only a level, even floor. Only MuJoCo predicts the effect of a tile's edge, crumbs
+//! or a slope. No gait lifts a foot, so a pad that is pushed against an edge has to climb it.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Write as _};
@@ -16,15 +16,15 @@ use crate::grains;
 use crate::mujoco::scene_of;
 use crate::table::Part;
 
-/// The names of the robots that are walked over edges and blocks: the paper's on every surface, the
+/// The names of the robots that walk over edges and blocks: the paper's robot on every surface, the
 /// others on the highest edge and blocks.
 pub const ROBOTS: [&str; 5] = ["paper", "own-gaits", "large", "unequal", grains::ROBOT];
 
-/// The least displacement by a cycle, mm and deg, of a gait that walks; others look around or wag.
+/// The least displacement in a cycle, mm and deg, of a gait that walks; other gaits look around or wag.
 const MIN_DISPLACEMENT: (f64, f64) = (9.0, 3.0);
 
-/// The parts of the displacement on a level floor for which a gait is made: distance, turn, or
-/// both.
+/// Returns the purpose of a gait with this displacement on a level floor: distance, turn, or both; empty for
+/// a gait that does not walk.
 pub(crate) fn parts(Displacement([ahead, _, turn]): Displacement) -> Vec<Part> {
     let all = [
         (Part::Ahead, ahead.abs() > MIN_DISPLACEMENT.0),
@@ -36,7 +36,7 @@ pub(crate) fn parts(Displacement([ahead, _, turn]): Displacement) -> Vec<Part> {
         .collect()
 }
 
-/// The gaits of a robot that walk, each with its displacement on a level floor by MuJoCo.
+/// Returns the gaits of a robot that walk, each with its displacement on a level floor by MuJoCo.
 ///
 /// # Panics
 /// If no displacement of a gait is stored.
@@ -56,7 +56,7 @@ pub fn gaits(figures: &Figures, robot: &str) -> Vec<(String, Displacement)> {
             *answers.expect("figures.json has it"),
         )
     });
-    // The path of a gait that depends on ties is not determined.
+    // The path of a gait without an answer of the model is not determined.
     level
         .filter(|(_, answers)| answers.model.is_some())
         .map(|(gait, answers)| (gait, answers.mujoco))
@@ -64,7 +64,7 @@ pub fn gaits(figures: &Figures, robot: &str) -> Vec<(String, Displacement)> {
         .collect()
 }
 
-/// A kind of floor, or a fault of a foot on a level one.
+/// A kind of floor, or a fault of a foot on a level floor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Surface {
     /// A step up across the path, tenths of a mm high: the edge of a tile or of a thin carpet.
@@ -92,7 +92,7 @@ impl Surface {
         Self::NoPad,
     ];
 
-    /// The surfaces that a robot walks on.
+    /// Returns the surfaces that a robot walks on.
     pub fn of(robot: &str) -> Vec<Self> {
         match robot {
             "paper" => Self::ALL.into(),
@@ -105,19 +105,20 @@ impl Surface {
         matches!(self, Self::Edge(_) | Self::Blocks(_))
     }
 
-    /// The least share of its distance that a gait must keep on this surface, if it goes ahead or
-    /// back.
+    /// Returns the least share of its distance that a gait must keep on this surface, if it walks ahead or
+    /// back; `None` if any share is accepted.
     pub fn least_distance(self) -> Option<f64> {
         self.is_climbed().then_some(0.85)
     }
 
-    /// The least share of its angle that a gait must keep on this surface, if it turns. A lost pad
-    /// is a fault to be mended: it halves some turns.
+    /// Returns the least share of its turn that a gait must keep on this surface; `None` if any share is
+    /// accepted: a lost pad halves some turns, but is a fault that is to be repaired.
     pub fn least_turn(self) -> Option<f64> {
         (self != Self::NoPad).then_some(0.75)
     }
 
-    /// The floor on the path of a gait.
+    /// Returns the floor on the path of a gait. `direction` is -1 for a gait that walks back, so that it, too,
+    /// walks up a slope.
     fn floor(self, assembly: &Assembly, crossing: &Crossing, direction: f64) -> Floor {
         let robot = assembly.robot();
         let mut floor = Floor::of(robot);
@@ -129,13 +130,13 @@ impl Surface {
                 let side = |[_, left]: [f64; 2]| if left > 0.0 { 0.4 } else { 0.8 };
                 floor.friction = robot.ground().feet.positions([0.0; 4]).map(side);
             }
-            // The screw's head, of steel, on the floor.
+            // The screw's steel head rubs on the floor.
             Self::NoPad => floor.friction[0] = 0.2,
         }
         floor
     }
 
-    /// The scene of a gait on this surface; `level` is the gait's displacement on a level floor.
+    /// Returns the scene of a gait on this surface; `level` is the gait's displacement on a level floor.
     ///
     /// # Panics
     /// If the robot has no such gait.
@@ -149,7 +150,7 @@ impl Surface {
         let mut scene = scene_of(name, assembly, gait, Case::ALL[0]);
         scene.ratio = robot.ground().ratio;
         let gait = robot.gait(gait).expect("it is the robot's");
-        // On even pads a gait has its full speed from the first cycle on.
+        // On pads without a grain, a gait has its full speed from the first cycle on.
         let settling = match scene.ratio == 1.0 {
             true => 0,
             false => grains::settling(gait),
@@ -173,8 +174,8 @@ fn mm(tenths: u8) -> f64 {
     f64::from(tenths) / 10.0
 }
 
-/// Blocks of 10 to 20 mm at pseudo-random places, the same each time: one in each square of 30 mm,
-/// so that they cover a quarter of the floor. None is under a foot at the start.
+/// Returns blocks of 10 to 20 mm at pseudo-random places, the same in each call: one block in each square of
+/// 30 mm, so that they cover a quarter of the floor. No block is under a foot at the start.
 fn strewn_blocks(robot: &Robot, high: f64) -> Vec<Block> {
     const SQUARE: f64 = 30.0;
     const REACH: i32 = 12;
@@ -217,7 +218,7 @@ impl fmt::Display for Surface {
 /// MuJoCo's displacements by robot, gait and surface.
 pub type Surfaces = BTreeMap<String, BTreeMap<String, BTreeMap<String, Displacement>>>;
 
-/// The displacements stored in `surfaces.json`.
+/// Returns the displacements stored in `surfaces.json`.
 ///
 /// # Panics
 /// If `surfaces.json` is not a table of displacements.
@@ -225,28 +226,29 @@ pub fn stored() -> Surfaces {
     serde_json::from_str(include_str!("../surfaces.json")).expect("surfaces.json")
 }
 
-/// The displacement of a gait of the paper's robot on a level floor by MuJoCo.
+/// Returns the displacement of a gait of the paper's robot on a level floor by MuJoCo.
 ///
 /// # Panics
-/// If none is stored.
+/// If no displacement of the gait is stored.
 pub fn level(figures: &Figures, gait: &str) -> Displacement {
     let answers = figures.get("paper", gait, Case::ALL[0]);
     answers.expect("figures.json has it").mujoco
 }
 
-/// The gaits that are known to keep less than they should, each with its robot and surface. On pads
-/// with a grain, `back` pushes against the grain.
+/// The gaits that are known to keep less of their displacement than required, each with its robot and
+/// surface. On pads with a grain, `back` pushes against the grain.
 pub const KNOWN_SHORTFALLS: [(&str, &str, Surface); 2] = [
     (grains::ROBOT, "back", Surface::Edge(20)),
     (grains::ROBOT, "back", Surface::Blocks(10)),
 ];
 
-/// True for a gait of [`BELOW`].
+/// True for a gait in [`KNOWN_SHORTFALLS`].
 pub fn is_known_shortfall(robot: &str, gait: &str, surface: Surface) -> bool {
     KNOWN_SHORTFALLS.contains(&(robot, gait, surface))
 }
 
-/// The least share of a displacement's part that a gait must keep on a surface.
+/// Returns the least share of its distance or turn that a gait must keep on a surface; `None` if any share
+/// is accepted.
 fn least(surface: Surface, part: Part) -> Option<f64> {
     match part {
         Part::Ahead => surface.least_distance(),
@@ -254,7 +256,8 @@ fn least(surface: Surface, part: Part) -> Option<f64> {
     }
 }
 
-/// The messages for a gait that loses more of its distance or its turn than a surface allows.
+/// Returns a message for the distance and for the turn of a gait, if it loses more of it than a surface
+/// allows.
 pub fn excess_losses(
     surface: Surface,
     level: Displacement,
@@ -271,7 +274,7 @@ pub fn excess_losses(
     parts(level).into_iter().filter_map(loss).collect()
 }
 
-/// The table of a robot's gaits on its surfaces, as Markdown.
+/// Returns the table of a robot's gaits on its surfaces in Markdown.
 pub fn surfaces_table(robot: &str, figures: &Figures, surfaces: &Surfaces) -> String {
     let of_robot = Surface::of(robot);
     let heads = of_robot.iter().map(|surface| format!(" {surface} |"));

@@ -1,4 +1,4 @@
-//! The figures as tables: all of them, and those of the paper's robot for README.
+//! The figures as text: a table of all figures of a robot, and a Markdown table with one row per gait.
 
 use std::fmt::Write as _;
 
@@ -7,10 +7,10 @@ use lizard_robot::Robot;
 use crate::case::{Case, Feet, Legs};
 use crate::figures::{Displacement, Figures};
 
-/// A displacement by a cycle up to this counts as none: mm ahead, and deg of turn.
+/// Displacement per cycle up to which a component counts as zero: mm ahead, and deg of turn.
 const MIN_DISPLACEMENT: (f64, f64) = (1.0, 0.5);
 
-/// A component of a displacement: the way ahead, or the turn.
+/// A component of a displacement: the distance ahead, or the turn.
 #[derive(Clone, Copy)]
 pub(crate) enum Part {
     Ahead,
@@ -18,7 +18,7 @@ pub(crate) enum Part {
 }
 
 impl Part {
-    /// The parts that are not negligible; `Ahead` if both are.
+    /// Returns the components that are not negligible; `Ahead` if both are negligible.
     pub(crate) fn of(displacement: Displacement) -> Vec<Self> {
         let [ahead, _, turn] = displacement.0.map(f64::abs);
         let mut parts = Vec::new();
@@ -46,8 +46,8 @@ impl Part {
     }
 }
 
-/// The table of all figures of a robot: model and MuJoCo side by side, a block for each kind of
-/// legs.
+/// Returns the table of all figures of a robot: model and MuJoCo side by side, one block for each
+/// kind of legs.
 pub fn table(name: &str, robot: &Robot, figures: &Figures) -> String {
     let mut text = String::new();
     for legs in [Legs::Rigid, Legs::Strut] {
@@ -105,13 +105,13 @@ pub fn table(name: &str, robot: &Robot, figures: &Figures) -> String {
     text.trim_end().to_owned() + "\n"
 }
 
-/// The gaits that move, in the order of robot.toml.
+/// Returns the names of the gaits that move, in the order of robot.toml.
 fn gaits(robot: &Robot) -> impl Iterator<Item = &str> {
     let moving = robot.gaits().iter().filter(|gait| gait.moves());
     moving.map(|gait| gait.name())
 }
 
-/// The displacement per cycle of each gait, as Markdown. For level feet: the model's prediction with
+/// Returns the displacement per cycle of each gait, as a Markdown table. For level feet: the model's prediction with
 /// ideal servos and with the robot's, and MuJoCo's result. With a foot 1.0 mm too long: the range
 /// from the model with ideal servos to MuJoCo.
 pub fn spread(name: &str, robot: &Robot, figures: &Figures) -> String {

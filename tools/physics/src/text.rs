@@ -1,10 +1,10 @@
-//! The stored displacements as JSON, in lines by which a diff shows the changes.
+//! The stored displacements as JSON with one entry per line, so that a diff shows each change.
 
 use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-/// Writes a JSON object with a line for each key.
+/// Formats a map as a JSON object with one line per key.
 ///
 /// # Panics
 /// Never: the values are names and numbers.
@@ -12,7 +12,7 @@ pub fn lines<T: Serialize>(map: &BTreeMap<String, T>) -> String {
     joined(map, |value| serde_json::to_string(value).expect("numbers")) + "\n"
 }
 
-/// Writes a JSON object of objects with a line for each inner key.
+/// Formats a map of maps as a JSON object of objects with one line per inner key.
 ///
 /// # Panics
 /// Never: the values are names and numbers.

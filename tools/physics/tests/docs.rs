@@ -1,7 +1,7 @@
-//! Tests of the figures on the pages: they are MuJoCo's, and agree with the model's within the
-//! bounds.
+//! Tests of the figures in the documentation: they are the stored ones, and the contact model agrees
+//! with MuJoCo within the bounds.
 //!
-//! `BLESS_PHYSICS=1` writes the tables again; `make docs` does it.
+//! With `BLESS_PHYSICS=1` the tables are written instead of compared, as `make docs` does.
 
 use lizard_robot::Robot;
 
@@ -14,7 +14,8 @@ use lizard_physics::{
     table,
 };
 
-/// Replaces or compares the text between a marker and the next end.
+/// Compares the text between a marker and the next end marker of a page with `wanted`; replaces it if
+/// `BLESS_PHYSICS` is set.
 fn check_block(page: &str, marker: &str, wanted: &str) {
     let file = here().join("../..").join(page);
     let text = std::fs::read_to_string(&file).expect(page);
@@ -100,7 +101,7 @@ fn every_gait_keeps_its_way_over_edges_and_blocks_and_its_turn_on_every_floor() 
     let all = all.map(std::collections::BTreeMap::len);
     assert_eq!(all.sum::<usize>(), count, "and no others are kept");
     assert!(count > 100, "{count}");
-    // The rule refuses a robot that an edge keeps from moving or turning, or that turns the wrong way.
+    // The check fails for a robot that an edge keeps from moving or turning, or that turns in the wrong direction.
     let stopped = Displacement([0.0; 3]);
     for (gait, losses) in [("walk", 1), ("back", 1), ("left", 1), ("arc-right", 2)] {
         let level = surface::level(&figures, gait);
@@ -127,7 +128,8 @@ fn every_foot_is_before_the_edge_at_the_start_and_past_it_at_the_end_but_of_gait
                 continue;
             }
             let block = crossing.block(2.0);
-            // The edge as a line: a point on it and the direction across it, from the block alone.
+            // The edge as a line: a point on it and the direction across it, computed from the block alone, so
+            // that a wrong block is noticed.
             let (sin, cos) = block.turned.to_radians().sin_cos();
             let half = block.size[1] / 2.0;
             let edge = [block.at[0] + half * sin, block.at[1] - half * cos];
@@ -163,7 +165,7 @@ fn every_foot_is_before_the_edge_at_the_start_and_past_it_at_the_end_but_of_gait
     assert_eq!(turns, wanted);
 }
 
-/// A pose (mm ahead, mm to the left, deg) after a displacement in its own frame.
+/// Returns a pose (mm ahead, mm to the left, deg) after a displacement in the pose's own frame.
 fn moved([x, y, turn]: [f64; 3], [ahead, left, by]: [f64; 3]) -> [f64; 3] {
     let (sin, cos) = turn.to_radians().sin_cos();
     [
@@ -194,7 +196,7 @@ fn every_other_assumption_and_pad_is_stored_as_it_is_written() {
             text
         );
     }
-    // The pads of robot.toml are the last row: the same walk as in the other table.
+    // The row `30` has the pads of robot.toml, so surfaces.json must have the same displacements for `walk`.
     let own = &shapes["30"];
     for surface in SURFACES {
         let name = surface.to_string();
@@ -261,7 +263,7 @@ fn a_foot_a_millimetre_too_long_costs_less_than_a_tenth_of_the_distance() {
             for (before, after) in model.into_iter().chain([(level.mujoco, long.mujoco)]) {
                 let ahead = |displacement: Displacement| displacement.0[0].hypot(displacement.0[1]);
                 let turn = |displacement: Displacement| displacement.0[2].abs();
-                // The gait is for a distance, for a turn, or for neither.
+                // A gait is judged by its distance if it has one, else by its turn; a gait without either is skipped.
                 let (was, is) = match (ahead(before) > 4.0, turn(before) > 1.0) {
                     (true, _) => (ahead(before), ahead(after)),
                     (false, true) => (turn(before), turn(after)),
@@ -293,7 +295,7 @@ fn every_key_that_a_trial_sets_is_valid_in_robot_toml() {
     for key in keys {
         let (section, name) = key.split_once("] ").expect(key);
         let header = format!("\n{section}]");
-        // An array is not a valid value of any key; the error for an unknown key is another one.
+        // No key takes an array, so a known key is refused for its type; an unknown key gives another error.
         let wrong = match text.contains(&header) {
             true => {
                 let at = text.find(&header).expect("it is there") + 1;

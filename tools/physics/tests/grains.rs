@@ -1,11 +1,12 @@
-//! Tests of the speeds on pads with a grain, as computed last by the model and MuJoCo.
+//! Tests of the stored speeds on pads with a grain, by the contact model and by MuJoCo.
 //!
-//! `BLESS_PHYSICS=1` writes them into the page and into the robot's file; `make docs` does it.
+//! With `BLESS_PHYSICS=1` the speeds are written into docs/gaits.md and robots/grain.toml, as `make docs` does.
 
 use lizard_physics::grains::{self, GAITS, Grains, RATIOS};
 use lizard_physics::{here, robot};
 
-/// Speeds of a gait at a ratio, by the model and by MuJoCo: mm/s ahead or deg/s of turn.
+/// Returns the speeds of a gait at a friction ratio, by the model, if known, and by MuJoCo. `part` is the index
+/// in the displacement: 0 for mm/s ahead, 2 for deg/s of turn.
 fn speeds(kept: &Grains, gait: &str, ratio: f64, part: usize) -> Vec<f64> {
     let period = robot(grains::ROBOT).gait(gait).expect(gait).period();
     let index = RATIOS.iter().position(|known| *known == ratio);
@@ -16,7 +17,7 @@ fn speeds(kept: &Grains, gait: &str, ratio: f64, part: usize) -> Vec<f64> {
         .collect()
 }
 
-/// Replaces or compares the text of a file between two others.
+/// Compares a file's text between `begin` and `end` with `wanted`; replaces it if `BLESS_PHYSICS` is set.
 fn block(path: &str, begin: &str, end: &str, wanted: &str) {
     let file = here().join("../..").join(path);
     let text = std::fs::read_to_string(&file).expect(path);

@@ -1,10 +1,10 @@
-//! Tests of the contact model against rapier, on springs, at other frictions, on legs mounted
-//! outward.
+//! Tests of the contact model against the physics engine rapier: at other frictions, on legs mounted
+//! outward, and for a tuned gait.
 //!
 //! The displacements were computed by the engine rapier 0.36 for a chassis with inertia and four
 //! dragging balls, without the model. The engine is no longer compiled; its results stay, so that a
-//! wrong change of the model is noticed. Gaits that depend on inertia were walked more slowly
-//! there.
+//! wrong change of the model is noticed. The engine walked gaits that depend on inertia at a slower
+//! pace.
 
 use lizard_physics::{Displacement, robot};
 use lizard_robot::{Body, Feet, Ground};
@@ -15,7 +15,7 @@ const GAITS: [&str; 5] = ["walk", "trot", "crawl", "left", "arc-left"];
 /// The displacement in one cycle of each gait: mm forward, mm to the left, deg counter-clockwise.
 type Displacements = [[f64; 3]; 5];
 
-/// The paper's robot of 280 g.
+/// The ground of the paper's robot with a body of 280 g.
 fn ground() -> Ground {
     Ground {
         body: Body {
@@ -26,7 +26,7 @@ fn ground() -> Ground {
     }
 }
 
-/// Asserts that model and engine differ by at most this many mm and deg.
+/// Asserts that the model's displacement of each gait is within `mm` and `deg` of the engine's, `expected`.
 fn assert_agreement(ground: &Ground, expected: &Displacements, mm: f64, deg: f64) {
     let paper = robot("paper");
     for (name, displacement) in GAITS.into_iter().zip(expected) {
@@ -80,7 +80,7 @@ fn the_tuned_gait_is_faster_than_walk_in_the_engine_too() {
     assert!(fast > 1.25 * slow, "walk {slow:.1} mm/s, stride {fast:.1}");
 }
 
-/// On rigid legs at a friction of 0.4.
+/// The engine's displacements on rigid legs at a friction of 0.4.
 const SLIPPERY: Displacements = [
     [34.58, -0.02, 0.0],
     [26.64, -0.08, 0.0],
@@ -89,7 +89,7 @@ const SLIPPERY: Displacements = [
     [17.68, 0.83, 5.26],
 ];
 
-/// On rigid legs at a friction of 1.0.
+/// The engine's displacements on rigid legs at a friction of 1.0.
 const ROUGH: Displacements = [
     [34.46, -0.02, 0.0],
     [26.66, -0.08, 0.0],
@@ -98,7 +98,7 @@ const ROUGH: Displacements = [
     [17.67, 0.84, 5.24],
 ];
 
-/// On rigid legs mounted 45 degrees outward, at half the pace.
+/// The engine's displacements on rigid legs mounted 45 degrees outward, at half the pace.
 const MOUNTED: Displacements = [
     [5.57, 0.0, 0.0],
     [12.87, 0.27, 0.0],

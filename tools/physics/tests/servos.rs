@@ -1,6 +1,6 @@
-//! Tests of servos that cannot follow, as computed last by the model and MuJoCo.
+//! Tests of the stored displacements with servos that cannot follow, by the contact model and by MuJoCo.
 //!
-//! `BLESS_PHYSICS=1` writes the table into the page; `make docs` does it.
+//! With `BLESS_PHYSICS=1` the table is written into docs/judges.md, as `make docs` does.
 
 use lizard_physics::here;
 use lizard_physics::servos::{GAITS, Variant, servos_table, stored, text};
@@ -17,7 +17,7 @@ fn a_servo_that_cannot_follow_loses_in_the_model_what_it_loses_in_mujoco() {
             let (was, is) = (answers.model.expect("a way"), variant.model(gait));
             let error = (was.0[part] - is.0[part]).abs();
             assert!(error < 0.05, "{name}, {gait}: {was:?} {is:?}");
-            // The rule refuses servos that follow only in the model.
+            // Half of MuJoCo's displacement must be reported as a disagreement.
             let mut lost = answers;
             lost.mujoco.0[part] /= 2.0;
             assert!(

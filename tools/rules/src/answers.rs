@@ -9,10 +9,10 @@ use crate::rule::Rule;
 /// Longest time from the answer to an order until all four servos have pulses.
 const UNTIL_AWAKE: Time = 600 * MS;
 
-/// Time from an answer that promises no pulses to the end of the check for them.
+/// Time from an answer that promises no pulses to the end of the check that none begins.
 const QUIET_TIME: Time = 140 * MS;
 
-/// Longest time from `rest` until its pose, a whole record, is in the EEPROM.
+/// Longest time from `rest` until the complete record of the rest pose is in the EEPROM.
 const SAVING_TIME: Time = 400 * MS;
 
 /// Lines that no robot may accept.
@@ -103,7 +103,8 @@ impl Observer {
         }
     }
 
-    /// True if a servo must wake in its rest pose after a restart at this moment.
+    /// True if a servo must wake in its rest pose after a restart at this moment: the supply was good and main
+    /// undisturbed for long enough to save the pose of the last whole pulse.
     pub(crate) fn must_keep_rest_pose(&self, servo: usize) -> bool {
         let since = self.servos[servo].whole_at;
         let least_good = self.limits.levels[0] + crate::supply::GOOD_ABOVE;

@@ -1,4 +1,4 @@
-//! Observations from outside the robot, and their times.
+//! Events that are observed from outside the robot, and their times.
 
 use lizard_core::console::word::Effect;
 use lizard_core::memory::restart::Cause;
@@ -15,17 +15,17 @@ pub(crate) const NEVER: Time = Time::MIN / 4;
 /// A servo's pulse.
 #[derive(Clone, Copy, Debug)]
 pub struct Pulse {
-    /// The servo, 0 to 3.
+    /// The servo's index, 0 to 3.
     pub servo: usize,
     /// The width, cycles.
     pub width: u32,
-    /// True if a reset or the supply cut it short.
+    /// True if a reset or the loss of the supply cut the pulse short.
     pub is_cut: bool,
-    /// True if interrupts were blocked when it should have ended.
+    /// True if interrupts were blocked when the pulse should have ended.
     pub is_held_up: bool,
 }
 
-/// An observation.
+/// An event that is observed from outside the robot.
 #[derive(Clone, Copy, Debug)]
 pub enum Event<'a> {
     /// Time passes.
@@ -42,9 +42,9 @@ pub enum Event<'a> {
     Supply(u32),
     /// A byte arrives at the robot.
     Byte,
-    /// The end of a line arrives that needs an answer.
+    /// The last byte of a line that needs an answer arrives.
     Line {
-        /// True if it is a command, accepted or not: no other line counts for `deadman`.
+        /// True if the line is a command, accepted or not: no other line restarts the time of `deadman`.
         is_command: bool,
     },
     /// A command that moves, freezes or rests the robot; `done` is true if it was accepted,
@@ -55,7 +55,7 @@ pub enum Event<'a> {
         /// The outcome of the command.
         done: Option<bool>,
     },
-    /// Settings of the servos change.
+    /// The calibration of the servos changes.
     Calibrated {
         /// True if the settings in use are saved.
         is_saved: bool,
@@ -66,12 +66,12 @@ pub enum Event<'a> {
         line: &'a str,
         /// The line's effect on the servos.
         effect: Effect,
-        /// The time at which it was sent.
+        /// The time at which the line was sent.
         asked: Time,
         /// The answer.
         text: &'a str,
     },
-    /// A line that was sent at this time was not answered.
+    /// The line, sent at this time, was not answered.
     Unanswered(Time, &'a str),
     /// A line that the robot printed, answers included, and the time at which its first byte was written.
     Printed(Time, &'a str),

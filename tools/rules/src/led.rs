@@ -8,7 +8,7 @@ const FAULTS: [&str; 8] = [
     "none", "guard", "supply", "link", "watchdog", "late", "stack", "brownout",
 ];
 
-/// The code of a fault, by its word in `status`.
+/// Returns the code of a fault from its word in `status`.
 ///
 /// # Errors
 /// Fails if the word names no fault.

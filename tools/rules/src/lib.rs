@@ -1,14 +1,14 @@
-//! The rules of safety: a list of sentences that a user may rely on, and an observer who judges a
-//! robot by them.
+//! The rules of safety: a list of sentences that a user may rely on, and an observer that judges a
+//! robot by these rules.
 //!
 //! The model checker (`tools/explore`), the search for trouble on the simulated UNO
-//! (`make trouble`) and the search for harmful bytes (`tools/fuzz`) test the same promises.
-//! Each turns what its robot does into a sequence of [`Event`]s with their times, and the
-//! [`Observer`] judges them. It knows nothing of the robot's inner state: only lines,
+//! (`make trouble`) and the search for harmful bytes (`tools/fuzz`) all test these rules.
+//! Each tool turns what its robot does into a sequence of [`Event`]s with their times, and the
+//! [`Observer`] judges the events. It knows nothing of the robot's inner state: only lines,
 //! pulses, resets, the supply and what is written to the EEPROM.
 //!
-//! A rule that needs more than that is in the same list, [`Rule`], and is checked by the tools
-//! that see the inner state.
+//! A rule about the inner state is also in the list, [`Rule`], but only the tools that see the
+//! inner state check it.
 
 mod answers;
 mod event;

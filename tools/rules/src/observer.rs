@@ -21,13 +21,13 @@ pub struct Limits {
     /// The largest error of the robot's own measurement of the supply, mV: one step of the
     /// converter, and the rounding to two decimals.
     pub supply_error_mv: u32,
-    /// The longest time from the answer to a line to the end of the current frame.
+    /// The longest time that remains of the current frame when a line has been answered.
     pub frame_left: Time,
     /// The longest time from a fault to its report on the console.
     pub report_time: Time,
-    /// The longest time for which a line of the robot waits behind others before it is printed.
+    /// The longest time for which a line of the robot waits behind other lines before it is printed.
     pub queued: Time,
-    /// The longest time for which a routine rests by itself; 0 without such a routine.
+    /// The longest rest that a routine contains as a step; 0 if no routine rests.
     pub longest_rest: Time,
     /// True if the robot's `boot` setting may be `rest`.
     pub boots_to_rest: bool,
@@ -35,7 +35,7 @@ pub struct Limits {
     pub keeps_memory: bool,
     /// True if a brown-out may clear RAM.
     pub brown_outs_clear_ram: bool,
-    /// True if the saved travel may be narrower than the one in use.
+    /// True if the saved travel may be narrower than the travel in use.
     pub is_narrowed: bool,
 }
 
@@ -87,7 +87,7 @@ pub struct Observer {
     /// True if the last motion is a gait or a routine, which `deadman` ends.
     pub(crate) is_driven: bool,
     pub(crate) is_unsaved: bool,
-    /// Number of motions begun since the start, less the number reported as done.
+    /// Number of motions begun since the last reset, less the number reported as done.
     pub(crate) unfinished_motions: i32,
     pub(crate) permission: Permission,
     pub(crate) servos: [Servo; 4],
@@ -96,7 +96,7 @@ pub struct Observer {
     pub(crate) supply: Supply,
     pub(crate) reports: Reports,
     pub(crate) pending: Pending,
-    /// Time of the first of consecutive `rest` commands.
+    /// Time of the first of consecutive `rest` commands; `NEVER` after any other order.
     pub(crate) first_rest_command: Time,
     pub(crate) brown_outs: [Time; 5],
 }
@@ -104,9 +104,9 @@ pub struct Observer {
 /// Promises of the robot's answers that are not due yet.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pending {
-    /// Start and end of the time in which each servo must get a pulse; true for those that got one.
+    /// Start and end of the time in which each servo must get a pulse; true for each servo that got one.
     pub moves: Option<(Time, Time, [bool; 4])>,
-    /// Start and end of a time without any pulse, and the rule that forbids pulses.
+    /// Start and end of the time in which no pulse may begin, and the rule that forbids it.
     pub quiet: Option<(Time, Time, Rule)>,
     /// The time by which there must be a pulse, and the answer to `status` that gave no reason for
     /// a lack of pulses.
@@ -150,7 +150,7 @@ impl Observer {
         }
     }
 
-    /// Observes a frame's pulses and its end; `widths` are those of A1 to A4 in cycles, 0 for none.
+    /// Observes a frame's pulses and its end; `widths` are the pulse widths of A1 to A4 in cycles, 0 for no pulse.
     pub fn observe_frame(&mut self, start: Time, widths: [u16; 4]) {
         for (servo, width) in widths
             .into_iter()
@@ -163,16 +163,17 @@ impl Observer {
                 is_cut: false,
                 is_held_up: false,
             };
-            // A pulse is observed about when it ends; A1's begins 4 ms after the tick.
+            // Nominal times, to about a millisecond: A1's pulse begins 4 ms after the tick, each further servo's
+            // pulse one slot of 4 ms later.
             self.observe(start + (5 + 4 * servo as Time) * MS, Event::Pulse(pulse));
         }
         self.observe(start + 20 * MS, Event::Pass);
     }
 
-    /// Returns `Ok` if no rule was broken since the last call, and forgets those that were.
+    /// Returns `Ok` if no rule was broken since the last call; forgets all broken rules.
     ///
     /// # Errors
-    /// Returns the first rule that was broken.
+    /// Returns the rule that was broken first.
     pub fn verdict(&mut self) -> Result<(), BrokenRule> {
         let mut broken = std::mem::take(&mut self.broken);
         if broken.is_empty() {
@@ -182,7 +183,7 @@ impl Observer {
         }
     }
 
-    /// Returns all broken rules since the last call, and forgets them.
+    /// Returns all rules that were broken since the last call, and forgets them.
     pub fn take_broken(&mut self) -> Vec<BrokenRule> {
         std::mem::take(&mut self.broken)
     }
@@ -191,17 +192,17 @@ impl Observer {
         self.broken.push(BrokenRule::new(rule, seen));
     }
 
-    /// True while lines wait for their answers.
+    /// True while the robot has not answered every line.
     pub const fn has_unanswered_lines(&self) -> bool {
         self.lines > 0
     }
 
-    /// True while no pulse may begin.
+    /// True while the robot has no permission to begin pulses.
     pub const fn rests(&self) -> bool {
         !self.permission.may
     }
 
-    /// The time at which a fault stopped the robot; `None` if none did.
+    /// The time at which a fault stopped the robot; `None` if no fault did, or if an order has ended the stop.
     pub const fn stopped_since(&self) -> Option<Time> {
         self.reports.stopped
     }
@@ -211,13 +212,14 @@ impl Observer {
         self.reports.stopped.is_some() && !self.reports.is_reported
     }
 
-    /// True if the supply was below level 0 (writing), 1 (moving) or 2 (pulses) in the last `within`.
+    /// True if the supply was below a level within the last `within` cycles. `level` is 0 for writing, 1 for moving,
+    /// 2 for pulses.
     pub fn was_low(&self, level: usize, within: Time) -> bool {
         let mv = self.limits.levels[level];
         self.supply.time_below(mv, self.now - within, self.now + 1) > 0
     }
 
-    /// The time until the last promise is due; `None` if there are no promises.
+    /// The time until the last pending promise is due; `None` if no promise is pending.
     pub fn due_in(&self) -> Option<Time> {
         let pending = &self.pending;
         let ends = [
@@ -229,7 +231,7 @@ impl Observer {
         ends.into_iter().flatten().max().map(|end| end - self.now)
     }
 
-    /// Drops the promises that are not due yet.
+    /// Drops all pending promises.
     pub fn drop_pending(&mut self) {
         self.pending = Pending::default();
     }
@@ -239,7 +241,8 @@ impl Observer {
         self.now - self.start
     }
 
-    /// True if something outside the robot may have ended the pulses since this time.
+    /// True if a cause outside the firmware may have ended the pulses since this time: a reset, a stall, blocked
+    /// interrupts or a low supply.
     pub(crate) fn is_troubled(&self, since: Time) -> bool {
         let rest = self.limits.levels[2] + self.limits.supply_error_mv;
         self.start >= since
@@ -310,7 +313,7 @@ impl Observer {
         }
     }
 
-    /// Advances the time, and judges everything that was due by now.
+    /// Advances the time, and judges every promise that was due by now.
     fn advance(&mut self, time: Time) {
         self.now = self.now.max(time);
         self.permission.advance(self.now);
@@ -372,7 +375,7 @@ impl Observer {
         self.reports.start(cause, at);
     }
 
-    /// The time for which main was stalled in the last 300 ms: the sum of all stalls.
+    /// The total time for which main was stalled in the 300 ms before `time`.
     pub(crate) fn stalled(&self, time: Time) -> Time {
         let recent = self.stalls.iter().filter(|(_, end)| *end > time - 300 * MS);
         recent.map(|(start, end)| end.min(&time) - start).sum()
@@ -382,8 +385,8 @@ impl Observer {
         let at = self.now;
         if cause == Cause::Watchdog {
             let stalled = self.stalled(at);
-            // The watchdog's first stage, less the frame in which the watchdog was fed. When
-            // it is over, the pulses end; the reset comes later.
+            // The watchdog's first stage, less the frame in which the watchdog was fed. At the end of
+            // the first stage the pulses end; the reset follows in the second stage.
             if stalled < 100 * MS {
                 let ms = stalled / MS;
                 self.fail(Rule::NeedlessReset, format!("stalled for {ms} ms"));

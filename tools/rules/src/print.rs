@@ -1,11 +1,12 @@
-//! The observer's memory, rounded so that equivalent states are equal.
+//! The observer's state, rounded so that equivalent states are equal: the model checker then visits
+//! them only once.
 
 use std::fmt;
 
 use crate::event::{MS, Time};
 use crate::observer::Observer;
 
-/// Sorts an age in frames of 20 ms into a few classes.
+/// Sorts an age, in frames of 20 ms, into a few classes; returns the class's least number of frames.
 pub const fn frames_class(age: Time) -> u8 {
     match age / (20 * MS) {
         ..=0 => 0,

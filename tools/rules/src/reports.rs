@@ -1,4 +1,4 @@
-//! Reports of a stop: by `status` and on the console.
+//! The rules about reports of a stop: in `status` and on the console.
 
 use lizard_core::console::word::{Effect, Word};
 use lizard_core::memory::restart::Cause;
@@ -8,15 +8,15 @@ use crate::event::{MS, NEVER, Time};
 use crate::observer::Observer;
 use crate::rule::Rule;
 
-/// The last stop, with a flag for its report.
+/// The last stop by a fault, and whether the console has reported it.
 #[derive(Clone, Debug)]
 pub(crate) struct Reports {
     /// Time at which a fault stopped the robot, until the user acts.
     pub stopped: Option<Time>,
     /// True once the console has reported the reason.
     pub is_reported: bool,
-    /// True if an order that may not have reached the robot came after that report: a robot that
-    /// stays stopped does not report it again.
+    /// True if, after the report, an order was sent that may not have reached the robot: a robot that
+    /// is still stopped does not report the stop again.
     may_still_be_stopped: bool,
     /// Time of the last report of a fault on the console.
     pub reported_at: Time,
@@ -58,9 +58,9 @@ impl Reports {
 }
 
 impl Observer {
-    /// Judges a line that the robot printed; `since` is the time of its first byte.
+    /// Judges a line that the robot printed; `since` is the time at which the line's first byte was written.
     pub(crate) fn judge_line(&mut self, since: Time, line: &str) {
-        // After a reset the banner follows the part of a line that was cut off.
+        // After a reset the banner follows on the line that the reset has cut off, which is then no answer.
         if is_final(line) && !line.contains("# lizard ") {
             self.lines -= 1;
             if self.lines < 0 {
@@ -76,7 +76,7 @@ impl Observer {
             self.reports.is_reported = true;
             self.reports.reported_at = self.now;
             if line.contains("no line for") {
-                // A stop that an order has overtaken is over already.
+                // A line printed just after an order may report a stop that the order has ended already.
                 if since - self.ordered >= self.limits.queued {
                     self.reports.stop(self.now);
                 }
@@ -110,7 +110,7 @@ impl Observer {
         }
     }
 
-    /// Updates the `deadman` time and the flag for a driven robot from the answer to a line that was carried out.
+    /// Updates `deadman` and `is_driven` from the answer to a line; a refusal changes nothing.
     pub(crate) fn note_done(&mut self, answer: &str) {
         let Some(done) = answer.strip_prefix("ok ") else {
             return;
@@ -123,7 +123,7 @@ impl Observer {
             _ => {}
         }
         match Word::find(word.as_bytes()).map(Word::effect) {
-            // A gait or a routine.
+            // No word of the console, so the name of a gait or a routine.
             None if !word.starts_with("gait=") => self.is_driven = word != "stand",
             Some(Effect::Moves | Effect::Calibrates) => self.is_driven = false,
             _ => {}

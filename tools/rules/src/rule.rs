@@ -1,4 +1,4 @@
-//! All rules that the robot must keep, in the words of a user.
+//! All rules that the robot must keep, as sentences for a user.
 
 use std::fmt;
 

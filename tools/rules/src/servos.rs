@@ -7,7 +7,7 @@ use crate::event::{MS, NEVER, Pulse, Time};
 use crate::observer::Observer;
 use crate::rule::Rule;
 
-/// Longest time from one pulse of a servo to its next if no frame between them was left out.
+/// Longest time from one pulse of a servo to its next while the servo gets a pulse in every frame.
 const MAX_PULSE_GAP: Time = 30 * MS;
 
 /// Longest time for which a gait may go on after `deadman` has run out.
@@ -16,10 +16,10 @@ const LATE: Time = 40 * MS;
 /// Largest difference of consecutive pulses of a servo that stands still, cycles.
 const STEADY: u32 = 16;
 
-/// Longest time from an order to rest to the end of the last pulse.
+/// Longest time from a `rest` order to the end of the last pulse.
 const UNTIL_REST: Time = 45 * MS;
 
-/// Shortest time from a start to `boot`: 3 s, less about a frame, since the first tick comes
+/// Shortest time from a reset until `boot` acts: 3 s, less about a frame, since the first tick comes
 /// early.
 const BOOT: Time = 2_975 * MS;
 
@@ -35,9 +35,9 @@ const UNTIL_RESET: Time = 160 * MS;
 pub(crate) struct Permission {
     /// True while pulses may begin.
     pub may: bool,
-    /// The time at which the permission ends, if it is known, and true if an order has set it.
+    /// The time at which the permission ends, and true if an order has set this time; `None` if no end is known.
     end: Option<(Time, bool)>,
-    /// The earliest time at which `boot` grants the permission.
+    /// The earliest time at which `boot` grants the permission; `None` if `boot` grants none.
     pub boot: Option<Time>,
 }
 
@@ -51,8 +51,8 @@ impl Permission {
         }
     }
 
-    /// Cancels the end that an order has set: another event came first, so the robot may not have
-    /// carried the order out.
+    /// Cancels the end of the permission that an order has set: another event came first, so the robot may not
+    /// have carried the order out.
     pub(crate) fn cancel_order(&mut self) {
         self.end.take_if(|(_, is_order)| *is_order);
     }
@@ -93,10 +93,10 @@ impl Permission {
     }
 }
 
-/// The event since a servo's last whole pulse that matters for the next one.
+/// The event since a servo's last whole pulse that decides which leap the next pulse may have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Since {
-    /// No event, so that a leap is not allowed.
+    /// No event: a leap breaks the slew limit.
     Nothing,
     /// A reset that kept the RAM, while the robot had pulses.
     Reset,
@@ -149,7 +149,7 @@ impl Servo {
         }
     }
 
-    /// Forgets the last pulse, since the servo was told to rest before it woke.
+    /// Drops the rules that a hang or a reset sets for the next pulse, since an order to rest replaces them.
     pub(crate) fn forget_pulse(&mut self) {
         self.is_hung = false;
         if self.since == Since::Reset {
@@ -157,8 +157,8 @@ impl Servo {
         }
     }
 
-    /// Notes a restart: true if the pulses hung before it, if pulses were allowed, if the robot takes over
-    /// its position, and if its rest pose is still known.
+    /// Notes a restart. The arguments are true if the program hung before the restart; if pulses were allowed; if
+    /// the robot takes over the servo's position from RAM; and if the rest pose in the EEPROM is still valid.
     pub(crate) fn restart(
         &mut self,
         is_hung: bool,
@@ -178,7 +178,7 @@ impl Servo {
 }
 
 impl Observer {
-    /// Judges a pulse by the rules and the pulses before it.
+    /// Judges a pulse by its width, its permission and the servo's previous pulses.
     pub(crate) fn pulse(&mut self, pulse: Pulse) {
         let at = self.now;
         let servo = self.servos[pulse.servo];
@@ -232,10 +232,10 @@ impl Observer {
         self.is_silence_judged = false;
     }
 
-    /// Judges a pulse that differs from the one before by the time since the last command.
+    /// Judges a pulse that moves a servo: the last command must not be older than `deadman` allows.
     fn judge_silence(&mut self, servo: usize) {
         let silence = self.now - self.command_read;
-        // After a stall main is late for a frame.
+        // For about a frame after a stall, main is late.
         let is_calm = self.disturbed + 25 * MS <= self.command_read;
         if self.is_driven && self.deadman > 0 && is_calm && silence > self.deadman + LATE {
             let (ms, says) = (silence / MS, self.deadman / MS);
@@ -268,7 +268,7 @@ impl Observer {
         let (last_servo, last, last_after_hang) = self.last_begin;
         let is_soon = at - last < MIN_WAKE_GAP;
         if is_soon && pulse.servo == last_servo {
-            // A late pulse has cost the servo a frame or two; it does not wake again.
+            // A late pulse has cost the servo a frame or two; this is no new wake-up.
             return;
         }
         if is_soon && !(is_after_hang && last_after_hang) {
@@ -296,7 +296,7 @@ impl Observer {
             || self.start > end - 25 * MS
             || self.booted_to_rest > end - 60 * MS
             || self.supply.time_below(rest, end - 600 * MS, end) > 0
-            // A routine that rests ends there if the robot may not move on, or if no line arrives.
+            // A rest within a routine is final if the supply forbids to move on, or if no line arrives.
             || self.supply.time_below(stop, end, end + self.limits.longest_rest) > 0
             || self.reports.reported_at > end;
         if !has_reason {

@@ -4,14 +4,14 @@ use crate::event::{MS, NEVER, Time};
 use crate::observer::Observer;
 use crate::rule::Rule;
 
-/// Margin by which a good supply is above its first level, mV.
+/// Margin above the first level (writing) from which the supply counts as good, mV.
 pub(crate) const GOOD_ABOVE: u32 = 200;
 
-/// Time for which a supply must be low before the robot may report it: six frames, less one before
-/// the first reading and one after the last.
+/// Time for which the supply must be low before the robot may report it: six frames, less one frame before
+/// the first reading and one after the last reading.
 const SIX_FRAMES: Time = 80 * MS;
 
-/// Time after which the robot must know that a supply is low: six frames and two readings.
+/// Time within which the robot must detect a low supply: six frames and two readings.
 const KNOWN_LOW: Time = 220 * MS;
 
 /// Time of the first reading after a start: in the second frame.
@@ -22,7 +22,7 @@ const FIRST_READING: Time = 20 * MS;
 pub(crate) struct Supply {
     /// Each voltage, mV, with the time from which it applied.
     history: Vec<(Time, u32)>,
-    /// The last time at which the supply was not good.
+    /// The time of the last change of the supply from or to a voltage that is not good.
     pub poor: Time,
 }
 
@@ -51,12 +51,12 @@ impl Supply {
         self.history.last().map_or(u32::MAX, |(_, mv)| *mv)
     }
 
-    /// True if the supply has been good since this time.
+    /// True if the supply has been at or above `poor`, mV, since this time.
     pub(crate) fn is_good_since(&self, since: Time, poor: u32) -> bool {
         self.now() >= poor && self.poor <= since
     }
 
-    /// The time for which the supply was below `mv` in `from..to`.
+    /// The total time within `from..to` for which the supply was below `mv`.
     pub(crate) fn time_below(&self, mv: u32, from: Time, to: Time) -> Time {
         let ends = self.history.iter().skip(1).map(|(at, _)| *at);
         let pieces = self.history.iter().zip(ends.chain([Time::MAX]));
@@ -72,7 +72,8 @@ impl Supply {
         low.is_some_and(|(at, _)| *at <= since)
     }
 
-    /// The time since each level was last crossed, negative while above it.
+    /// The time since the supply last crossed each level: positive while the supply is below the level, zero or
+    /// negative while it is not.
     pub(crate) fn times_since_crossed(&self, levels: [u32; 3], now: Time) -> [Time; 3] {
         levels.map(|mv| {
             let is_low = self.now() < mv;

@@ -21,7 +21,7 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// The time between two checks of a condition.
+/// The time from one check of a condition to the next.
 const POLL: Duration = Duration::from_millis(1);
 
 /// The limit of all tests: much longer than anything takes on a busy machine.
@@ -43,8 +43,8 @@ impl TimeLimit {
         Self(time)
     }
 
-    /// Waits for a condition; returns false if the limit comes first. Use it in a test whose
-    /// message is longer than that of [`TimeLimit::expect`].
+    /// Waits for a condition; returns false if it does not hold within the limit. For a test that needs a
+    /// longer message than [`TimeLimit::expect`] gives.
     pub fn wait_for(self, mut condition: impl FnMut() -> bool) -> bool {
         let end = Instant::now() + self.0;
         loop {
@@ -61,17 +61,17 @@ impl TimeLimit {
     /// Waits until the condition holds.
     ///
     /// # Panics
-    /// If it does not hold within the limit; `what` completes the message `waited 300s for`.
+    /// If the condition does not hold within the limit; `what` completes the message `waited 300s for`.
     #[track_caller]
     pub fn expect(self, what: &str, condition: impl FnMut() -> bool) {
         assert!(self.wait_for(condition), "waited {self} for {what}");
     }
 
-    /// Runs `work`, which may block as a read or a join does, and returns its result. It runs on a
-    /// thread of its own, which continues until the test program ends if the limit is reached first.
+    /// Runs `work`, which may block as a read or a join does, and returns its result. `work` runs on a
+    /// thread of its own, which outlives the call if the limit is reached first.
     ///
     /// # Panics
-    /// If it does not return within the limit, see [`TimeLimit::expect`]; or if it panics.
+    /// If `work` does not return within the limit, with the message of [`TimeLimit::expect`]; or if `work` panics.
     #[track_caller]
     pub fn within<T: Send + 'static>(
         self,
@@ -93,12 +93,12 @@ impl TimeLimit {
         }
     }
 
-    /// Waits for the end of a program and returns its status. Its output, if it is piped, must be
-    /// read elsewhere.
+    /// Waits for a program to exit and returns its status. If the program's output is piped, another thread must
+    /// read it.
     ///
     /// # Errors
-    /// Returns the system's error; [`ErrorKind::TimedOut`] with a message if it does not end within
-    /// the limit, when it is killed.
+    /// Returns the system's error. Returns [`ErrorKind::TimedOut`] with a message if the program does not exit
+    /// within the limit; the program is then killed.
     pub fn end_of(self, child: &mut Child) -> io::Result<ExitStatus> {
         let mut ended = Ok(None);
         self.wait_for(|| {
@@ -117,8 +117,8 @@ impl TimeLimit {
     /// Runs a program with `input` on its standard input, and returns its output.
     ///
     /// # Errors
-    /// Fails if it cannot be started; [`ErrorKind::TimedOut`] with a message if it, or a program
-    /// that it has started and that has its output, runs beyond the limit.
+    /// Fails if the program cannot be started. Returns [`ErrorKind::TimedOut`] with a message if the program runs
+    /// beyond the limit, or if a process that it started keeps its output open for that long.
     pub fn output(self, command: &mut Command, input: &[u8]) -> io::Result<Output> {
         let name = command.get_program().to_string_lossy().into_owned();
         let too_long = |what: &str| {
@@ -132,7 +132,7 @@ impl TimeLimit {
             .spawn()?;
         if let Some(mut stdin) = child.stdin.take() {
             let input = input.to_vec();
-            // A program that needs no input, or refuses its arguments, closes its end.
+            // Writing fails, which is no error, if the program reads no input or refuses its arguments.
             thread::spawn(move || stdin.write_all(&input));
         }
         let printed = [

@@ -1,4 +1,4 @@
-//! Waits that hang fail with a message, and all other waits succeed.
+//! Tests of waits with a time limit: those that hang fail with a message, all others succeed.
 #![cfg(unix)] // the programs that these tests start are on every Unix
 
 use std::io::ErrorKind;
@@ -11,7 +11,7 @@ use lizard_time_limit::{LIMIT, TimeLimit};
 
 const SHORT: TimeLimit = TimeLimit::new(Duration::from_millis(100));
 
-/// The message of the panic in which this ends.
+/// Returns the message of the panic in which `wait` ends.
 fn panic_message<T>(wait: impl FnOnce() -> T) -> String {
     let panic = catch_unwind(AssertUnwindSafe(wait))
         .err()
@@ -84,7 +84,7 @@ fn the_status_of_a_program_that_ends_is_returned() {
 
 #[test]
 fn a_program_gets_its_input_and_both_its_outputs_are_read() {
-    // More than a pipe holds, both ways.
+    // More than a pipe's buffer holds, in both directions.
     let input = vec![b'x'; 1 << 20];
     let output = LIMIT
         .output(&mut shell("tee /dev/stderr; exit 3"), &input)

@@ -12,7 +12,10 @@ export interface Best extends Found {
 }
 
 const functions = {
-  /** Prepares a search: the number of gaits to try, the servos' deg/s, and the trial of the gait to beat. Throws why there is nothing to search. */
+  /**
+   * Prepares a search; returns the number of gaits to try, the servos' largest deg/s, and the trial of the gait to
+   * beat. Throws the refusal.
+   */
   begin(module: WebAssembly.Module, { toml, floor, servos, task }: OnFloor & { task: SearchTask }) {
     initSync({ module });
     robot = new Robot();
@@ -27,7 +30,10 @@ const functions = {
   /** Tries one more gait. */
   step: () => robot.fasterStep(),
 
-  /** The best so far, compared on a number of random robots. The search only returns gaits within the robot's limits. */
+  /**
+   * Returns the best gait so far, compared with the gait to beat on a number of random robots; null while no gait has
+   * kept the limits.
+   */
   best(robots: number): Best | null {
     const found = robot.fasterFound(robots);
     return found && { ...found, trial: robot.trial(found.bars) as Trial };

@@ -1,4 +1,5 @@
-// A search for a gait that walks faster than the edited one, in a worker of its own that ends with the search.
+// A search for a gait that walks faster than the edited one, in a worker of its own, which is terminated with the
+// search.
 import type { SearchTask } from '../../generated/tune';
 import { Helper } from '../helper';
 import type { OnFloor, Trial } from '../robot';
@@ -7,9 +8,11 @@ import type { Best, FasterFunctions } from './faster-worker';
 
 export type { Best };
 
-/** Gaits between two reports of the best so far: one population of the search. */
+/** Number of gaits between two reports of the best so far: one population of the search. */
 const LOOK = 20;
-/** Random robots for a report and for the final comparison, which has as many as `lizard tune`. */
+/**
+ * Number of random robots for a report (`look`) and for the final comparison (`end`), the latter as in `lizard tune`.
+ */
 const ROBOTS = { look: 20, end: 200 };
 
 export type Answer =
@@ -24,7 +27,7 @@ export class FasterSearch {
   private readonly helper = new Helper<FasterFunctions>(new Worker(new URL('./faster-worker.ts', import.meta.url), { type: 'module' }));
   private isStopped = false;
 
-  /** Starts the search of `module`; `onAnswer` gets every answer, the last one included. */
+  /** Starts the search with the WebAssembly module; `onAnswer` gets every answer, the last one included. */
   constructor(module: Promise<WebAssembly.Module>, question: OnFloor & { task: SearchTask }, onAnswer: (answer: Answer) => void) {
     this.search(module, question, onAnswer)
       .catch((error: unknown): Answer => ({ of: 'end', refused: messageOf(error) }))
@@ -34,7 +37,7 @@ export class FasterSearch {
       });
   }
 
-  /** Ends the search with the best so far. */
+  /** Ends the search after the current gait; the last answer has the best gait so far. */
   stop(): void {
     this.isStopped = true;
   }

@@ -5,14 +5,14 @@ import type { Session } from '../session';
 /** Time from a restart until the robot stands, ms of the simulation. */
 const WAKES = 2500;
 
-/** Puts the gait into the session's robot. A board on USB gets it when its robot is written. */
+/** Puts the gait into the session's robot. A board on USB gets the gait only when the robot is written to it. */
 export async function takeGait(session: Session, made: EditedGait): Promise<Refused | null> {
   return session.change(session.robot.putGait(session.toml, made));
 }
 
 /**
- * Puts the gait into the session's robot and starts it on the simulated board, which restarts. A board on USB
- * has only the gaits that are written on it, so there it is refused.
+ * Puts the gait into the session's robot, restarts the simulated board and starts the gait. Refused for a board on
+ * USB, which has only the gaits that are written on it.
  */
 export async function tryGait(session: Session, made: EditedGait, ask: (line: string) => Promise<unknown>): Promise<Refused | null> {
   const refused = await wakeWith(session, made);
@@ -20,7 +20,10 @@ export async function tryGait(session: Session, made: EditedGait, ask: (line: st
   return refused;
 }
 
-/** Puts the gait into the session's robot, and waits until the simulated board that restarts with it stands. */
+/**
+ * Puts the gait into the session's robot, restarts the simulated board and waits until it stands. Refused for a board
+ * on USB.
+ */
 export async function wakeWith(session: Session, made: EditedGait): Promise<Refused | null> {
   if (session.isReal) {
     return { refused: 'A board on USB has only the gaits that are written on it: write this one, or go back to the simulation to try it.', meaning: null, line: null, key: '' };

@@ -1,5 +1,5 @@
 // The link to a board with a Bluetooth LE module on its serial line, by Web Bluetooth. A module passes bytes on in
-// packets, resets no board, and may be out of reach for a while: then this tries to reach it again.
+// packets and resets no board. If it is out of reach for a while, the link tries to reach it again.
 import { sleep, type Link } from './link';
 
 /** The parts of Web Bluetooth that the page uses; TypeScript's library does not declare them. */
@@ -25,7 +25,7 @@ interface Bluetooth {
   requestDevice(options: { filters: object[]; optionalServices: (number | string)[] }): Promise<Device>;
 }
 
-/** The serial services of modules, with a characteristic for each direction: those of the HM-10 and of Nordic. */
+/** The serial services of the HM-10 and of Nordic's modules, each with its characteristics to and from the module. */
 const LINES = [
   { service: 0xffe0, to: 0xffe1, from: 0xffe1 },
   {
@@ -46,11 +46,11 @@ function bluetooth(): Bluetooth | undefined {
 }
 
 const isApple = /iPhone|iPad/.test(navigator.userAgent) || (navigator.platform === 'MacIntel' && navigator.maxTouchPoints > 1);
-/** Advice for a user with an iPhone; null on another device. */
+/** Advice for a user whose iPhone or iPad has no Web Bluetooth; null on another device or browser. */
 export const ON_IPHONE =
   isApple && !bluetooth() ? 'On an iPhone or iPad neither Safari nor Chrome can reach a robot. The browser Bluefy can, by a Bluetooth LE module.' : null;
 
-/** The reason why this browser cannot reach a Bluetooth module; null if it can. */
+/** Returns the reason why this browser cannot reach a Bluetooth module; null if it can. */
 export function noBluetooth(): string | null {
   if (bluetooth()) return null;
   return (
@@ -80,7 +80,7 @@ export class BluetoothLink implements Link {
   static async open(): Promise<BluetoothLink | null> {
     const radio = bluetooth();
     if (!radio) throw new Error(noBluetooth() ?? '');
-    // A page that may not use it is told that there is none.
+    // False without a radio, but also if the page may not use it.
     const isThere = await radio.getAvailability();
     const filters = [...LINES.map(({ service }) => ({ services: [service] })), ...NAMES.map((namePrefix) => ({ namePrefix }))];
     let device: Device;
@@ -151,7 +151,7 @@ export class BluetoothLink implements Link {
 
   async close(): Promise<void> {
     this.isClosing = true;
-    // Bytes that were sent go out before the link ends.
+    // The bytes of earlier writes go out first, unless that takes too long.
     await Promise.race([this.packets.catch(() => {}), sleep(RETRY)]);
     this.device.gatt.disconnect();
   }

@@ -1,17 +1,20 @@
-// A robot out of reach would walk on. So while a user drives it, `deadman` is set, and the robot ends a gait by itself
-// when no line has come for that long. After the gait its own setting is restored.
+// A robot out of reach would walk on. So while a user drives it, the page sets `deadman`, the time without a line
+// after which the robot ends a gait by itself. After the gait the robot's own setting is restored.
 import { WORDS } from '../words';
 import type { Dialogue } from './dialogue';
 
-/** `deadman` while a user drives, ms. Users choose round numbers, so a robot with this one got it from a page that was closed. */
+/**
+ * `deadman` while a user drives, ms. No user chooses this odd number, so a robot that has it got it from a page that
+ * was closed.
+ */
 const DRIVEN = 901;
-/** Lines that the page sends within that time: two of three may be lost. */
+/** Number of lines that the page sends within the `deadman` time: two of three may be lost. */
 const LINES = 3;
 
 export class Deadman {
   /** The robot's own setting, ms; null until it is read. */
   private own: number | null = null;
-  /** The result of setting it, true once the robot has confirmed it; null while the robot has its own setting. */
+  /** Resolves to true if the robot confirms the page's `deadman`; null while the robot has its own setting. */
   private set: Promise<boolean> | null = null;
 
   constructor(private readonly dialogue: Dialogue) {}
@@ -20,7 +23,7 @@ export class Deadman {
     return this.set !== null;
   }
 
-  /** Sets `deadman` before a gait; false if the robot does not confirm it, and then no gait may start. */
+  /** Sets `deadman` before a gait; resolves to false if the robot does not confirm it: then no gait may start. */
   begin(): Promise<boolean> {
     return (this.set ??= this.confirmed());
   }
@@ -40,7 +43,7 @@ export class Deadman {
     if (ms !== undefined) this.own = Number(ms) === DRIVEN ? 0 : Number(ms);
   }
 
-  /** Notes a line of the user that changes the setting. */
+  /** Notes a user's line, accepted if `isOk`, that changes the robot's own setting. */
   follow(line: string, isOk: boolean): void {
     if (!isOk) return;
     const [word, ms] = line.split(/\s+/);
@@ -48,7 +51,7 @@ export class Deadman {
     if (word === WORDS.load || word === WORDS.factory) this.own = null;
   }
 
-  /** Stops sending lines, so that the robot stops unless somebody else sends some. */
+  /** Stops the repeated line, so that the robot stops unless somebody else sends lines. */
   letGo(): void {
     this.dialogue.keepAlive(null);
   }

@@ -1,36 +1,36 @@
 // The console's rule: every line gets exactly one answer, in order, `ok ...` or `err ...`; lines that begin
-// with # come before it, or unasked. One line is sent at a time, but `stop` waits for none: it goes out at once, and
-// again until the robot answers it, since a link may lose a line or its answer.
+// with # come before the answer, or unasked. One line is sent at a time, except `stop`: it is sent at once, and
+// repeated until the robot answers it, since a link may lose a line or its answer.
 import { WORDS } from '../words';
 import type { Link } from './link';
 
-/** The beginning of the firmware's first line. */
+/** The beginning of the firmware's banner, its first line after a reset. */
 export const GREETING = '# lizard ';
-/** The largest length of a robot's line; longer ones are noise and are cut. */
+/** The largest length of a line of the robot; longer lines are noise and are cut. */
 const MAX_LINE_LENGTH = 500;
 /** Time within which an answer must come, ms. */
 const TIMEOUT = 3000;
-/** Time from one `stop` to the next while none is answered, ms. */
+/** Time from one `stop` to its repetition while none is answered, ms. */
 const STOP_INTERVAL = 250;
-/** Time within which the answers to earlier `stop` lines have come, ms. */
+/** Time after the first answer to a repeated `stop` within which the answers to its repetitions have come, ms. */
 const LATE_STOP_ANSWERS_MS = 500;
 /** Time without an expected answer after which a robot counts as silent, ms. */
 export const SILENCE = 800;
 /** The texts that a Bluetooth module inserts into the line when its link begins and ends. */
 const MODULE_TEXTS = /OK\+(CONN|LOST)/g;
 /**
- * Answers to `stop` of a robot without pulses, which rests or has no robot in its flash. The whole line must match: one that a radio
- * has cut off may be the beginning of an older answer.
+ * The refusals of `stop` by a board without pulses, because it rests or has no robot in its flash. The whole line
+ * must match: a line that a radio has cut off may be the beginning of an older answer.
  */
 const CANNOT_MOVE = /^err (7 servos are resting, send stand first|10 no robot in the flash)$/;
-/** A line of the answer to `cal`. */
+/** A # line with a setting, which `cal` prints before its answer. */
 const SETTING = /^# (A[1-4]|boot|deadman) /;
 
 export interface Answer {
   ok: boolean;
   /** The answer's line. */
   text: string;
-  /** The # lines before it. */
+  /** The # lines before the answer. */
   notes: string[];
 }
 
@@ -39,7 +39,7 @@ export interface DialogueListener {
   sent(line: string): void;
   /** Called with each line that is received and is to be shown. */
   received(line: string): void;
-  /** Called with each line of the robot, also with one that is not shown. */
+  /** Called with each line that the robot sends, also with lines that are not shown. */
   arrived(line: string): void;
   /** Called when the robot has left a line unanswered for `SILENCE`, and when it answers again. */
   silent(isSilent: boolean): void;
@@ -61,7 +61,7 @@ interface Question extends PromiseCallbacks {
   timeout: number;
 }
 
-/** A `stop` that has no answer yet, and how often it was sent. */
+/** A `stop` that has no answer yet: the callbacks of its callers, and how often it was sent. */
 interface Stop {
   ends: PromiseCallbacks[];
   times: number;
@@ -69,7 +69,9 @@ interface Stop {
 
 const wordOf = (line: string) => line.trim().toLowerCase().split(/\s/)[0];
 
-/** True if a line that begins with `ok` or `err` can be the answer to `line`, and is not a late answer to another. */
+/**
+ * True if a line that begins with `ok` or `err` can be the answer to `line`, and not a late answer to another line.
+ */
 function fits(answer: string, line: string): boolean {
   const word = wordOf(line);
   const expected = { [WORDS.status]: 'gait=', '?': WORDS.help }[word] ?? word;
@@ -83,15 +85,15 @@ export class Dialogue {
   private readonly waiting: Question[] = [];
   private pending: Question | null = null;
   private stop: Stop | null = null;
-  /** Pending while further answers to repeated `stop` lines may come, which belong to no other line. */
+  /** Pending while answers to repetitions of `stop` may still come; no other line is sent meanwhile. */
   private echoes: Promise<void> | null = null;
   private isSilent = false;
-  /** The line that is sent repeatedly, in addition to all others. */
+  /** The line that is sent at intervals, in addition to all others; null for none. */
   private repeated: { line: string } | null = null;
-  /** The expected answer to that line. */
+  /** The expected answer to the repeated line. */
   private repeatedAnswer = '';
   private notes: string[] = [];
-  /** True while something else uses the line, such as the boot loader. */
+  /** True once the dialogue has ended: something else uses the link, such as the boot loader. */
   isClosed = false;
 
   constructor(
@@ -102,8 +104,8 @@ export class Dialogue {
   }
 
   /**
-   * Sends a line and waits at most `timeout` ms for its answer; `stop` is sent at once, and its answer is waited for
-   * as long as the link is there. A quiet line is not shown in the console.
+   * Sends a line and waits at most `timeout` ms for its answer. `stop` is sent at once, and its answer is awaited
+   * without a limit. A quiet line is not shown in the console.
    */
   ask(line: string, quiet = false, timeout = TIMEOUT): Promise<Answer> {
     return new Promise((answered, failed) => {
@@ -114,7 +116,7 @@ export class Dialogue {
     });
   }
 
-  /** Drops all questions: the board restarts, or the line is used by something else. */
+  /** Drops all questions: the board restarts, or something else uses the link. */
   forget(): void {
     const dropped = [...(this.pending ? [this.pending] : []), ...(this.stop?.ends ?? [])];
     this.pending = null;
@@ -154,7 +156,10 @@ export class Dialogue {
     }
   }
 
-  /** Sends a line every `every` ms, in addition to all others and without waiting for its answer; null ends that. */
+  /**
+   * Sends a line every `every` ms, in addition to all others and without waiting for its answer; null ends the
+   * repetition.
+   */
   keepAlive(line: string | null, every = 0): void {
     const repeated = (this.repeated = line === null ? null : { line });
     if (!repeated) return;
@@ -172,7 +177,7 @@ export class Dialogue {
     this.stop = null;
     this.listener.stopping(false);
     this.setHeard();
-    // Answers come in order, so the answer to the previous line has been lost.
+    // Answers come in order, so the answer to the line sent before `stop` has been lost.
     const { pending: asked } = this;
     this.pending = null;
     asked?.failed(new DroppedQuestion());
@@ -226,7 +231,7 @@ export class Dialogue {
   }
 
   private line(received: string): void {
-    // A reset cuts off the board's line, perhaps an answer, and the banner follows on the same line.
+    // A reset cuts off the line that the board is sending, and the banner follows on the same line.
     const line = received.slice(Math.max(0, received.indexOf(GREETING))).replace(MODULE_TEXTS, '');
     if (line === '') return;
     this.listener.arrived(line);

@@ -3,7 +3,10 @@
 export const sleep = (ms: number): Promise<void> => new Promise((done) => setTimeout(done, ms));
 
 export interface Link {
-  /** USB resets a board when its port is opened, and writes it; a radio does neither, and is slower. */
+  /**
+   * By USB a board is reset when its port is opened, and its flash can be written; by radio neither works, and lines
+   * take longer.
+   */
   readonly kind: 'simulated' | 'usb' | 'radio';
   /** The board's name in messages. */
   readonly name: string;
@@ -13,20 +16,20 @@ export interface Link {
   onBytes: (bytes: Uint8Array) => void;
   /** Called when the board is gone. */
   onGone: (why: string) => void;
-  /** Called when a radio loses its board for a while, and when it has it again. */
+  /** Called when a radio loses contact with its board, and when contact is restored. */
   onReach?: (isInReach: boolean) => void;
   /** Sends bytes. */
   write(bytes: Uint8Array): Promise<void>;
   /** Resets the board, as opening a port does. */
   reset(): Promise<void>;
-  /** Waits, in the time of the board. */
+  /** Waits in the board's time, which is simulated time for a simulated board. */
   wait(ms: number): Promise<void>;
   close(): Promise<void>;
 }
 
-/** A link to a simulated board, which has to be run. */
+/** A link to a simulated board, which runs only in `advance`. */
 export interface Simulated extends Link {
-  /** Runs the board for some time. */
+  /** Runs the board for a simulated time. */
   advance(ms: number): void;
   /** Sets the voltage of the board's supply. */
   setSupply(volts: number): void;

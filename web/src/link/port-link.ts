@@ -22,7 +22,7 @@ const BAUD = 115_200;
 const SERIAL_PROFILE = '00001101-0000-1000-8000-00805f9b34fb';
 /** The USB vendors arduino.cc and arduino.org, whose chips are on UNOs and on no Nano. */
 const ARDUINO = [0x2341, 0x2a03];
-/** The message of a browser that cannot connect a board. */
+/** The message for a browser without Web Serial. */
 export const NO_SERIAL = 'This browser cannot reach a board on USB: it has no Web Serial. Chrome, Chromium, Edge and newer Firefox have it, on localhost and over https.';
 const GONE = 'the board is not connected any more';
 /** Length of the pulse on the reset line, ms. */

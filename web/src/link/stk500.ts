@@ -1,5 +1,5 @@
-// Writes an image through optiboot, the boot loader of a UNO: STK500 version 1, as in avrdude's
-// `-c arduino`.
+// Writes the flash of a UNO through optiboot, its boot loader, by the protocol STK500 version 1, as `avrdude -c
+// arduino` does.
 import { load } from '../../../tools/judge/src/hex.js';
 import { BOOT } from '../uno/board';
 import { WORDS } from '../words';
@@ -22,22 +22,27 @@ const IDLE_PAGE = Uint8Array.from({ length: PAGE }, (_, n) => (n % 2 === 0 ? 0xf
 const SIGNATURE = [0x1e, 0x95, 0x0f];
 const FLASH_SIZE = 32 * 1024;
 
-/** Time within which an answer must come, ms. Writing a page takes 20, but a busy machine may pass the bytes on a second later. */
+/**
+ * Time within which an answer must come, ms. Writing a page takes 20 ms, but a busy computer may deliver the bytes a
+ * second late.
+ */
 const TIMEOUT = 2000;
 /** Time after a reset in which the boot loader blinks and does not listen, ms. */
 const BLINKING_TIME = 400;
-/** Attempts to reach the boot loader in the rest of its second, in which it listens, and the time for each, ms. */
+/**
+ * Attempts to reach the boot loader, and the time for each, ms: after blinking it listens for the rest of a second.
+ */
 const ATTEMPTS = 5;
 const ATTEMPT_TIME = 110;
-/** Time within which the late answer to an earlier attempt has arrived, ms. */
+/** Time within which late answers to earlier attempts have arrived, ms. */
 const LATE_TIME = 40;
 
 export type Progress = (done: number, of: number, what: 'comparing' | 'writing' | 'verifying') => void;
 
-/** Thrown if the board's firmware does not match; nothing was written. */
+/** Thrown if the data do not suit the board, its firmware or its link; nothing was written. */
 export class FirmwareMismatch extends Error {}
 
-/** The bytes of a HEX file up to its end, in whole pages. Throws an error for the user. */
+/** Returns the flash image of a HEX file up to its last byte, in whole pages. Throws an error for the user. */
 export function imageOf(hex: string): Uint8Array {
   const flash = new Uint8Array(FLASH_SIZE).fill(0xff);
   load(hex, flash);
@@ -48,7 +53,7 @@ export function imageOf(hex: string): Uint8Array {
   return flash.subarray(0, Math.ceil(end / PAGE) * PAGE);
 }
 
-/** Part of the console's list of words, which every image of this firmware contains. */
+/** A part of the console's list of words; every image of this firmware contains it. */
 const CONSOLE = [WORDS.stop, WORDS.rest, WORDS.status, WORDS.pose].join('|');
 
 /** Returns true if an image contains the console of this firmware. */
@@ -109,7 +114,7 @@ async function reachBootLoader(link: Link, loader: Loader): Promise<void> {
   }
 }
 
-/** Resets the board and calls its boot loader. Throws an error for the user unless the chip is an ATmega328P. */
+/** Resets the board and reaches its boot loader. Throws an error for the user unless the chip is an ATmega328P. */
 async function begin(link: Link): Promise<Loader> {
   const loader = new Loader(link);
   await link.reset();
@@ -123,21 +128,21 @@ async function begin(link: Link): Promise<Loader> {
 }
 
 /**
- * Resets the board, asks its boot loader for the chip, and starts the program on the board. No other code may use the
- * link meanwhile. Throws an error for the user if the board is not a UNO.
+ * Resets the board, reads the chip's signature through its boot loader, and starts the program on the board. No other
+ * code may use the link meanwhile. Throws an error for the user if the board is not a UNO.
  */
 export async function identify(link: Link): Promise<void> {
   const loader = await begin(link);
   await loader.command([LEAVE]);
 }
 
-/** Bytes of flash and their address, the start of a page. */
+/** Bytes of flash and their address, which is the start of a page. */
 export interface Piece {
   at: number;
   bytes: Uint8Array;
 }
 
-/** Returns the bytes in whole pages, the last one filled with the bytes of erased flash. */
+/** Returns the bytes in whole pages; the last page is filled up with 0xff, as in erased flash. */
 function inPages({ bytes }: Piece): Uint8Array {
   const pages = new Uint8Array(Math.ceil(bytes.length / PAGE) * PAGE).fill(0xff);
   pages.set(bytes);
@@ -146,18 +151,19 @@ function inPages({ bytes }: Piece): Uint8Array {
 
 /**
  * Resets the board, writes a piece of its flash, reads it back and starts the board. If `required` is given and the
- * board does not have it, nothing is written. No other code may use the link meanwhile. Throws an error for the user.
+ * board's flash differs from it, nothing is written. No other code may use the link meanwhile. Throws an error for
+ * the user.
  */
 export async function flash(link: Link, piece: Piece, progress: Progress, required: Piece | null = null): Promise<void> {
   const loader = await begin(link);
   const goTo = (address: number) => loader.command([LOAD_ADDRESS, (address >> 1) & 0xff, address >> 9]);
-  /** The address of the first byte that differs; -1 if none does. */
+  /** Returns the address of the first byte of the flash that differs from `wanted`; -1 if none does. */
   const firstDifference = async (wanted: Piece, what: 'comparing' | 'verifying') => {
     const bytes = inPages(wanted);
     for (let at = 0; at < bytes.length; at += PAGE) {
       await goTo(wanted.at + at);
       const read = await loader.command([READ_PAGE, 0, PAGE, FLASH], PAGE);
-      // Bytes after the end do not count.
+      // The bytes that fill up the last page do not count.
       const wrong = read.findIndex((byte, i) => at + i < wanted.bytes.length && byte !== bytes[at + i]);
       if (wrong >= 0) return wanted.at + at + wrong;
       progress(at + PAGE, bytes.length, what);

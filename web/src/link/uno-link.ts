@@ -5,7 +5,7 @@ import { Frames } from '../uno/frames';
 import { type Simulated, Timers } from './link';
 
 const CYCLES_PER_MS = FREQUENCY / 1000;
-/** Time that the chip runs between two reads of its output, ms. */
+/** Simulated time that the chip runs between two reads of its output, ms. */
 const SLICE = 2;
 
 /** Callbacks for the servo pulses of the simulated board. */
@@ -27,7 +27,7 @@ export class UnoLink implements Simulated {
   /** Time that the chip still has to run, cycles. */
   private cyclesToRun = 0;
 
-  /** Takes the Arduino numbers of the servos' pins, A1 to A4. */
+  /** `pins` are the Arduino numbers of the pins of servos A1 to A4. */
   constructor(
     readonly board: SimulatedBoard,
     pins: number[],
@@ -41,9 +41,9 @@ export class UnoLink implements Simulated {
     };
   }
 
-  /** Runs the board for this time, and passes on its bytes and pulses. */
+  /** Runs the board for a simulated time, and passes on its bytes and pulses. */
   advance(ms: number): void {
-    // Whole cycles only.
+    // The chip runs whole cycles only.
     this.cyclesToRun += Math.round(ms * CYCLES_PER_MS);
     while (this.cyclesToRun > 0) {
       const slice = Math.min(this.cyclesToRun, SLICE * CYCLES_PER_MS);
@@ -81,7 +81,7 @@ export class UnoLink implements Simulated {
     this.board.setContact(pin, isClosed);
   }
 
-  /** Waits for this time of the simulated board. */
+  /** Waits in simulated time. */
   wait(ms: number): Promise<void> {
     return this.timers.waitUntil(this.board.cycle + ms * CYCLES_PER_MS);
   }

@@ -1,6 +1,7 @@
 // Formats the results as a table, as an SVG picture to share, and as CSV for a spreadsheet.
 import type { Part, Report } from '../../generated/measure';
 
+// Layout of the picture, px: its width, the height of a line, that of the title, the left edges of the columns.
 const WIDTH = 700;
 const LINE = 22;
 const HEAD = 64;
@@ -9,19 +10,21 @@ const PARTS = ['forward', 'left', 'turn'] as const;
 const PART_NAMES = ['ahead, mm', 'left, mm', 'turn, deg'];
 const FIELDS = ['mean', 'sd', 'error', 'predicted', 'differs'] as const;
 
+/** A number with its sign and two decimals; a dash if there is none. */
 const signed = (value: number | null | undefined) => (value == null ? '–' : `${value < 0 ? '−' : '+'}${Math.abs(value).toFixed(2)}`);
 
+/** The comparison of a measured mean with its prediction, in standard errors. */
 function verdict({ agrees, differs }: Part): string {
   if (agrees === null || differs === null) return '–';
   return agrees ? 'agrees' : `${Math.abs(differs).toFixed(1)} errors ${differs > 0 ? 'more' : 'less'}`;
 }
 
-/** The heads of a gait's columns; MuJoCo's way is known for some robots at full speed. */
+/** The column headings of a gait's table. MuJoCo's column is there only for some robots at full speed. */
 export const heads = ({ mujoco }: Report) => ['a cycle', 'measured', 'error', 'predicted', '', 'sd', ...(mujoco ? ['MuJoCo'] : [])];
 
 export const titleOf = ({ gait, speed, cycles }: Report) => `${gait}, ${speed} %, ${cycles} cycles`;
 
-/** The rows of a gait: the parts of its movement. */
+/** The rows of a gait's table, one for each part of its movement. */
 export function rows(report: Report): string[][] {
   return PARTS.map((name, i) => {
     const part = report[name];
@@ -30,7 +33,7 @@ export function rows(report: Report): string[][] {
   });
 }
 
-/** A sentence that gives the range of a prediction. */
+/** A sentence that gives the range of a prediction; empty without a range. */
 export function rangeOf({ range }: Report): string {
   if (!range) return '';
   const [name = '', unit = ''] = range.part.split(', ');

@@ -1,19 +1,30 @@
-// Drives gaits one after another in front of a camera, keeps the robot on the sheet, and records when it walks each
-// of them. Anything else that the robot does meanwhile ends the protocol: Stop, another gait, a broken link.
+// Drives gaits one after another in front of a camera, keeps the robot near the sheet of tags, and records the time
+// of each walk. Any other activity of the robot ends the protocol: `stop`, another gait, a lost link.
 import { DONE, GAITS, WORDS } from '../words';
 import type { Back } from './seen';
 
-/** Most cycles of a walk back, most attempts, and the least share of the distance that must lie ahead or behind. */
+/**
+ * Limits of a return by a gait: most cycles, most attempts, and the least share of the distance that must lie ahead
+ * or behind.
+ */
 const RETURN = { cycles: 12, tries: 2, minAhead: 0.7 };
-/** Least distance per cycle of a gait that leads back, mm, and its largest turn, deg. */
+/** Least distance per cycle of a gait by which the robot can return, mm, and its largest turn, deg. */
 const RETURN_GAIT = { way: 3, turn: 2 };
-/** Distance from the middle beyond which the robot first returns, if the next walk would leave the sheet, mm. */
+/**
+ * Distance from the middle of the sheet beyond which the robot returns first if the next walk would leave the sheet,
+ * mm.
+ */
 const RETURN_DISTANCE = 80;
-/** Distance outward near the end of the sheet that ends a walk, mm; not less, as a gait swings within its cycle. */
+/**
+ * Outward movement near the edge of the sheet that ends a walk, mm; not less, since the body swings within each
+ * cycle.
+ */
 const MAX_OUTWARD = 20;
-/** Time for which the robot may walk unseen, s. */
+/** Time for which the robot may walk without being seen by the camera, s. */
 const MAX_UNSEEN_S = 2;
-/** Least cycles of a walk: the first and the last are not measured. A walk cut earlier counts as this many. */
+/**
+ * Least cycles of a walk: its first and last cycle are not measured. A walk that was cut shorter counts as this many.
+ */
 export const MIN_CYCLES = 4;
 
 /** A gait that the robot walked, on the film's clock. */
@@ -23,7 +34,7 @@ export interface Walk {
   during: [number, number];
 }
 
-/** The predicted movement of a cycle of a gait: mm and deg. */
+/** The predicted displacement per cycle of a gait: mm and deg. */
 export interface PredictedCycle {
   command: string;
   forward: number;
@@ -33,9 +44,12 @@ export interface PredictedCycle {
 export interface Plan {
   /** The gaits, each with the time of a cycle at full speed, s. */
   gaits: { command: string; period: number }[];
-  /** Cycles of each gait. Those that the end of the sheet cuts off are walked once the robot is back. */
+  /**
+   * Number of cycles of each gait. Cycles that the edge of the sheet cuts off are walked once the robot is back in
+   * the middle.
+   */
   cycles: number;
-  /** Percent. */
+  /** Pace, percent. */
   speed: number;
   /** Time from one walk to the next, s. */
   pause: number;
@@ -43,30 +57,30 @@ export interface Plan {
 
 /** The robot and the camera, as the protocol uses them. */
 export interface Stage {
-  /** Sends a line; resolves with true if the robot does it. */
+  /** Sends a line; resolves to true if the robot accepts it. */
   ask: (line: string) => Promise<boolean>;
   /** The film's clock, s. */
   now: () => number;
   /** Waits some seconds. */
   wait: (seconds: number) => Promise<void>;
-  /** Returns the predicted movements of the gaits, as far as they are known. */
+  /** Returns the predicted displacements of the gaits, as far as they are known. */
   ways: () => PredictedCycle[];
   /** Asks a person to put the robot back; resolves when that is done, or when the protocol is over. */
   putBack: () => Promise<void>;
   say: (text: string) => void;
 }
 
-/** Thrown if the robot does something other than the protocol. */
+/** Thrown when the protocol has ended before its last walk. */
 export class Interrupted extends Error {}
 
 /** A walk that has not ended yet. */
 interface Waiting {
   gait: string;
-  /** The robot's least distance from the middle so far, mm; null until the robot has taken the gait. */
+  /** The robot's least distance from the middle so far, mm; null until the robot has accepted the gait. */
   nearest: number | null;
-  /** True if it is being ended before its last cycle. */
+  /** True if the walk is being ended before its last cycle. */
   isCut: boolean;
-  /** The time at which it was over, on the film's clock, s. */
+  /** The end of the walk on the film's clock, s; null until it has ended. */
   end: number | null;
   done: () => void;
   fail: (error: Error) => void;
@@ -81,9 +95,9 @@ export class Protocol {
   private lastSent = '';
   /** Called when the protocol is over. */
   onEnd: () => void = () => {};
-  /** The reason why the protocol is over, or null. */
+  /** The reason why the protocol is over; null until then. */
   private endReason: Interrupted | null = null;
-  /** The robot's last place, and its time on the film's clock, s. */
+  /** The robot's last known place, and its time on the film's clock, s; null before the first. */
   private last: { back: Back; seconds: number } | null = null;
 
   constructor(private readonly stage: Stage) {}
@@ -105,7 +119,9 @@ export class Protocol {
     await this.wait(pause);
   }
 
-  /** Takes the robot's place in a picture, null if it shows none. Ends a walk that leads off the sheet. */
+  /**
+   * Takes the robot's place in a picture, null if the picture does not show it. Ends a walk that leaves the sheet.
+   */
   setPlace(back: Back | null): void {
     if (!back) return;
     this.last = { back, seconds: this.stage.now() };
@@ -115,21 +131,21 @@ export class Protocol {
     if (back.isNear && distance(back) > waiting.nearest + MAX_OUTWARD) this.cut(waiting);
   }
 
-  /** Takes a line that was sent to the robot, also by somebody else. */
+  /** Takes a line that was sent to the robot, by the protocol or another part of the page. */
   sent(line: string): void {
     const walks = ({ command }: PredictedCycle) => line === command || line.startsWith(`${command} `);
     if (line === WORDS.stop) this.end('it was stopped');
     else if (line !== this.lastSent && this.stage.ways().some(walks)) this.end(`the robot was sent "${line}"`);
   }
 
-  /** Takes a line that the robot printed; the line at the end of a gait comes before the new activity. */
+  /** Takes a line that the robot printed: `DONE` ends a walk, and arrives before `doing` is called. */
   received(line: string): void {
     if (line !== DONE || !this.waiting) return;
     this.finish(this.waiting);
     this.waiting = null;
   }
 
-  /** Takes the robot's present activity. */
+  /** Takes the robot's current activity; one that is not the protocol's ends the protocol. */
   setActivity(activity: string): void {
     const { waiting } = this;
     const walks = waiting?.gait === activity;
@@ -138,7 +154,9 @@ export class Protocol {
     this.end(activity === '' ? 'the link to the robot was cut, or it was reset' : `the robot does "${activity}"`);
   }
 
-  /** Ends the protocol for an external reason, such as a camera that is off, and stops a robot that walks. */
+  /**
+   * Ends the protocol for an external reason, such as a camera that is switched off, and stops a robot that walks.
+   */
   stop(why: string): void {
     const walks = this.waiting !== null;
     this.end(why);
@@ -153,14 +171,15 @@ export class Protocol {
     this.onEnd();
   }
 
-  /** The robot's place, if it was seen just now. */
+  /** The robot's place; null if the camera has not seen the robot for `UNSEEN`. */
   private get place(): Back | null {
     return this.last && this.stage.now() - this.last.seconds < MAX_UNSEEN_S ? this.last.back : null;
   }
 
   /**
-   * Brings the robot back from the end of the sheet: by a gait that leads to the middle, or else by hand. If only the
-   * next walk, of `way` mm, would leave the sheet, the robot goes to the middle if a gait leads there.
+   * Brings the robot back if it is near the edge of the sheet: by a gait that leads to the middle, or else by hand.
+   * If only the next walk, of `way` mm, would leave the sheet, the robot returns to the middle if a gait can take it
+   * there.
    */
   private async goBack(way: number): Promise<void> {
     for (let n = 0; ; n++) {
@@ -178,19 +197,24 @@ export class Protocol {
     }
   }
 
-  /** The gait that goes farthest ahead or back, by the sign of `ahead`, and hardly turns. */
+  /**
+   * Returns the gait that hardly turns and walks farthest ahead, or back if `ahead` is negative; null if none is fit.
+   */
   private gaitToward(ahead: number): PredictedCycle | null {
     const way = ({ forward, turn }: PredictedCycle) => (Math.abs(turn) < RETURN_GAIT.turn ? forward * Math.sign(ahead) : 0);
     const [best] = this.stage.ways().sort((a, b) => way(b) - way(a));
     return best && way(best) > RETURN_GAIT.way ? best : null;
   }
 
-  /** Walks a gait to its last cycle, or to the end of the sheet; returns its begin and end, which `keep` gets even if it was interrupted. */
+  /**
+   * Walks a gait to its last cycle, or to the edge of the sheet; returns begin and end, which `keep` also gets if it
+   * was interrupted.
+   */
   private async walk(gait: string, cycles: number, keep: (during: [number, number]) => void = () => {}): Promise<[number, number]> {
     const { stage } = this;
     const waiting: Waiting = { gait, nearest: null, isCut: false, end: null, done: () => {}, fail: () => {} };
     const walked = new Promise<void>((done, fail) => Object.assign(waiting, { done, fail }));
-    // It may fail before anything waits for it.
+    // The promise may reject before it is awaited.
     walked.catch(() => {});
     this.waiting = waiting;
     const begin = stage.now();

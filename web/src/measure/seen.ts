@@ -1,5 +1,6 @@
-// The tags of the last pictures: which are missing, where the robot is, and how it went there. Lengths are those of the
-// picture, with the floor's tags as the scale: near enough to say that the robot is about to leave, not to measure it.
+// The tags of the last pictures: which tags are missing, the robot's place, and its path. Lengths are measured in the
+// picture with the floor's tags as the scale: precise enough to warn that the robot is about to leave, not to measure
+// a gait.
 import type { Pixel, TagEntry as Tag } from '../../generated/measure';
 import type { Sight } from './worker';
 
@@ -8,25 +9,29 @@ const NAMES = ['the left tag of strip 1', 'the right tag of strip 1', 'the left 
 const DECK = 4;
 /** Edge of a tag on the floor, mm. */
 const EDGE = 50;
-/** Distance beyond the floor's tags, and from the picture's edge, at which the robot is near the end, mm. */
+/**
+ * Distance beyond the floor's tags, and distance from the picture's edge, from which the robot is about to leave, mm.
+ */
 const NEAR = 50;
 const FROM_EDGE = 150;
 /** Time over which the rate of pictures is counted, ms. */
 const RECENT = 2000;
-/** Pictures without a tag after which it counts as hidden. */
+/** Number of pictures without a tag after which the tag counts as hidden. */
 const MISSED = 3;
 
 const minus = (a: Pixel, b: Pixel): Pixel => [a[0] - b[0], a[1] - b[1]];
 const length = ([x, y]: Pixel) => Math.hypot(x, y);
 const mean = (points: Pixel[]): Pixel => [0, 1].map((i) => points.reduce((sum, point) => sum + (point[i] ?? 0), 0) / points.length) as Pixel;
 
-/** The way of the deck's tag to the middle of the floor's, mm: ahead, and to the right. */
+/**
+ * The displacement from the deck's tag to the middle of the floor's tags, mm: ahead, and to the left, of the robot.
+ */
 export interface Back {
   ahead: number;
   aside: number;
-  /** Length of that way at which the robot is near the end, mm. */
+  /** Distance from the middle beyond which the robot is near the edge, mm. */
   reach: number;
-  /** True if the robot is that far away, or near the picture's edge. */
+  /** True if the robot is beyond `reach`, or near the picture's edge. */
   isNear: boolean;
 }
 
@@ -34,9 +39,9 @@ export class Seen {
   size: [number, number] = [1, 1];
   /** The tags of the last picture. */
   tags: Tag[] = [];
-  /** Middles of the deck's tag. */
+  /** Middles of the deck's tag in the pictures so far. */
   path: Pixel[] = [];
-  /** Time that the last picture took, ms. */
+  /** Time that the search for tags in the last picture took, ms. */
   ms = 0;
   private readonly floor: (Tag | undefined)[] = [];
   private readonly missed = NAMES.map(() => MISSED);
@@ -51,7 +56,7 @@ export class Seen {
     while ((this.times[0] ?? 0) < performance.now() - RECENT) this.times.shift();
   }
 
-  /** Pictures in a second. */
+  /** Pictures per second. */
   get rate(): number {
     const [first, last] = [this.times[0], this.times.at(-1)];
     return first === undefined || last === undefined || last === first ? 0 : (1000 * (this.times.length - 1)) / (last - first);
@@ -61,7 +66,7 @@ export class Seen {
     return this.tags.find(({ id }) => id === DECK);
   }
 
-  /** Direction of the robot's head in the picture. */
+  /** Direction of the robot's head in the picture, as long as the deck's tag; null if that tag is not seen. */
   get heading(): Pixel | null {
     if (!this.deck) return null;
     const [a, b, c, d] = this.deck.corners;
@@ -77,7 +82,7 @@ export class Seen {
     return `Not seen: ${hidden.length > 0 ? `${hidden.join(', ')} and ${last}` : last}.`;
   }
 
-  /** The robot's way back to the middle; null if it is unknown. */
+  /** The robot's displacement back to the middle; null if the deck's tag or all tags of the floor are unknown. */
   get back(): Back | null {
     const { heading, deck, size } = this;
     const floor = this.floor.filter((tag) => tag !== undefined);

@@ -1,19 +1,22 @@
 // Pictures from a camera or from a film file, each with its time on the film's clock.
 import { messageOf } from '../trouble';
 
-/** Longest list of a film file's pictures that wait to be looked at. */
+/** Largest number of a film file's pictures that wait for their processing. */
 const LONGEST = 4;
 const CAMERA = { video: { facingMode: 'environment', width: { ideal: 1280 }, height: { ideal: 720 }, frameRate: { ideal: 30 } }, audio: false };
 
-/** Takes a picture and its time, s; resolves when it has been looked at. */
+/** Processes a picture and its time, s; resolves when that is done. */
 type Take = (picture: VideoFrame | ImageBitmap, seconds: number) => Promise<void>;
 
 export class Source {
   private stream: MediaStream | null = null;
-  /** Number of the beginnings so far: a picture of an earlier one is dropped. */
+  /**
+   * Number of calls of `stop`, which also comes before each new camera or film: a picture from before the last call
+   * is dropped.
+   */
   private begun = 0;
   private owed = 0;
-  /** The page's time less the film's, s; the delay of a picture makes it larger. */
+  /** The page's time less the film's, s: the least that was seen, since the delay of a picture makes it larger. */
   private ahead = Infinity;
 
   constructor(
@@ -30,7 +33,7 @@ export class Source {
     return performance.now() / 1000 - this.ahead;
   }
 
-  /** Opens the rear camera; `onEnd` is called if it goes away. Throws a message for the user. */
+  /** Opens the rear camera; `onEnd` is called if the camera is lost. Throws a message for the user. */
   async camera(onEnd: () => void): Promise<void> {
     this.stop();
     const { begun } = this;
@@ -81,7 +84,10 @@ export class Source {
     this.video.load();
   }
 
-  /** Gives each picture to `take`, as long as fewer than `most` wait. A film file waits meanwhile, and a camera's picture is left out. */
+  /**
+   * Gives each picture to `take` while fewer than `most` are waiting. Otherwise a film file pauses, and a camera's
+   * picture is dropped.
+   */
   private follow(most: number): void {
     const { video, begun } = this;
     this.owed = 0;
@@ -104,7 +110,7 @@ export class Source {
   }
 }
 
-/** The picture that a video shows. A VideoFrame is not copied. */
+/** Returns the picture that a video shows: without a copy if the browser has VideoFrame. */
 const pictureOf = async (video: HTMLVideoElement) => ('VideoFrame' in window ? new VideoFrame(video) : createImageBitmap(video));
 
 function refusal(error: unknown): string {

@@ -1,4 +1,5 @@
-// The worker of the room Measure: finds tags and paths in WebAssembly, so the page stays responsive. No picture leaves the machine.
+// The web worker of the room Measure: finds tags and paths in WebAssembly, so the page stays responsive. No picture
+// leaves the machine.
 import { expose } from 'comlink';
 
 import { type Asked, Camera, initSync, type TagEntry } from '../../generated/measure';
@@ -18,7 +19,10 @@ const canvas = new OffscreenCanvas(1, 1);
 // The pixels are read back often, so the canvas is kept in memory and not on the graphics chip.
 const pen = canvas.getContext('2d', { willReadFrequently: true });
 
-/** The brightness plane of a picture, a byte for each pixel; null if it has no such plane, or is scaled, turned or padded. */
+/**
+ * Returns the brightness plane of a picture, a byte for each pixel; null if it has no such plane, or is scaled,
+ * turned or padded.
+ */
 async function greyOf(picture: VideoFrame): Promise<Uint8Array | null> {
   const { format, visibleRect, displayWidth, displayHeight } = picture;
   const { rotation = 0, flip = false } = picture as { rotation?: number; flip?: boolean };
@@ -30,7 +34,7 @@ async function greyOf(picture: VideoFrame): Promise<Uint8Array | null> {
   return first?.offset === 0 && first.stride === displayWidth ? planes.subarray(0, displayWidth * displayHeight) : null;
 }
 
-/** The pixels of a picture, four bytes for each. */
+/** Returns the pixels of a picture, four bytes for each. */
 function coloursOf(picture: VideoFrame | ImageBitmap, width: number, height: number): Uint8Array {
   if (!pen) throw new Error('this browser cannot read the pixels of a picture');
   if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
@@ -71,10 +75,10 @@ const functions = {
       camera = new Camera();
     }),
 
-  /** Measures gaits in the film. Throws the reason if the film does not show what is needed. */
+  /** Measures gaits in the film. Throws the reason if they cannot be measured. */
   measure: (asked: Asked) => inTurn(() => camera.measure(asked)),
 
-  /** The sheet of tags as PDF, for letter paper if `isLetter`, else for A4. */
+  /** Returns the sheet of tags as PDF, for letter paper if `isLetter`, else for A4. */
   sheet: (isLetter: boolean) => Camera.sheet(isLetter) as Uint8Array<ArrayBuffer>,
 };
 

@@ -1,24 +1,30 @@
-// Limits the cost of 3D pictures on a machine without a graphics chip. There the processor paints them beside the
-// page. The time of a picture is measured; the next one waits for a multiple of that time and has fewer points.
+// Limits the cost of 3D pictures on a machine without a graphics chip. There the CPU paints them, which slows down
+// the rest of the page. The time of each picture is measured. After a slow picture, the next one waits for a multiple
+// of that time and has a lower resolution.
 
 /** Time within which a graphics chip finishes a picture, ms. */
 const QUICK = 34;
 /** Pause after a slow picture, as a multiple of its time. */
 const PAUSE = 2;
-/** Longest pause, ms, since a hidden page measures times that are too long. */
+/** Longest pause, ms. It limits the effect of times that are too long because the page was hidden. */
 const LONGEST = 1500;
-/** Lowest resolution, as a share of the screen's points to a side. */
+/** Lowest resolution, as a share of the screen's pixels along each side. */
 const COARSEST = 0.5;
+/** Factor of the resolution after a slow picture; it rises again by the inverse factor. */
 const COARSER = 0.8;
-/** Quick pictures in a row after which the resolution rises again. */
+/** Number of quick pictures in a row after which the resolution rises again. */
 const STEADY = 90;
 
 export class PaintBudget {
-  /** Resolution of the next picture, as a share of the screen's points to a side. */
+  /** Resolution of the next picture, as a share of the screen's pixels along each side. */
   resolution = 1;
+  /** Signalled when the last picture is finished; null if none is under way. */
   private fence: WebGLSync | null = null;
+  /** Time at which the last picture began, ms. */
   private start = 0;
+  /** Earliest time of the next picture, ms. */
   private next = 0;
+  /** Quick pictures in a row. */
   private quick = 0;
 
   constructor(private readonly gl: WebGL2RenderingContext) {}
@@ -40,7 +46,7 @@ export class PaintBudget {
     return now >= this.next;
   }
 
-  /** Notes that a picture was handed over; a picture painted `once` may take long. */
+  /** Records that a picture was handed over. A picture painted only `once` may take long: it counts as quick. */
   notePicture(once: boolean, now = performance.now()): void {
     this.start = once ? Infinity : now;
     this.fence = this.gl.fenceSync(this.gl.SYNC_GPU_COMMANDS_COMPLETE, 0);

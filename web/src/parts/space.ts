@@ -25,18 +25,18 @@ import type { BodyEntry } from '../../generated/parts';
 import type { Model, Solid } from './workshop';
 import { PaintBudget } from './paint-budget';
 
-/** Height by which a body of lift 1 rises in the fully exploded view, mm, as in the guide's pictures. */
+/** Height by which a body with `lift` 1 rises in the fully exploded view, mm, as in the guide's pictures. */
 const LIFT = 45;
-/** Size of a cell of the floor's grid, mm, and number of cells to a side. */
+/** Size of a cell of the floor's grid, mm, and number of cells along a side of the grid. */
 const CELL = 50;
 const CELLS = 16;
-/** Movement of the pointer below which a press is a click, CSS pixels. */
+/** Movement of the pointer during a press below which the press is a click, CSS pixels. */
 const CLICK = 5;
 /** Turn of the view by one press of a key, rad. */
 const TURN = Math.PI / 24;
 /** Time without a change after which the view counts as still, ms. */
 const STILL = 400;
-/** Share of the floor's colour in pale bodies: those of earlier steps, or all but the selected ones. */
+/** Share of the floor's colour in pale bodies: bodies of earlier steps, or all except the selected ones. */
 const PALE = 0.65;
 
 /** The view's settings. */
@@ -47,7 +47,7 @@ export interface ViewSettings {
   step: number | null;
   /** Index of the selected body; null for none. */
   picked: number | null;
-  /** Indices of the two bodies that collide; empty if none do. */
+  /** Indices of the two bodies that overlap or come too close; empty if all fit. */
   clash: number[];
 }
 
@@ -107,7 +107,7 @@ export class Space {
     });
   }
 
-  /** Turns or zooms the view as a key does; returns false for other keys. */
+  /** Turns, zooms or resets the view as the key asks; returns false if the key has no effect. */
   press(key: string): boolean {
     const ways: Record<string, [number, number, number]> = {
       ArrowLeft: [-TURN, 0, 1],
@@ -138,7 +138,7 @@ export class Space {
     return true;
   }
 
-  /** Resets to the view of the guide: from behind, from the left and from above. */
+  /** Resets the camera to the guide's view: from behind, from the left and from above. */
   home(): void {
     this.controls.target.set(0, -30, 5);
     // The camera is farther away for a narrow canvas, to show the whole robot.
@@ -149,7 +149,7 @@ export class Space {
     this.dirty = true;
   }
 
-  /** Replaces the robot by another one and its solids. */
+  /** Replaces the shown robot by another model and its solids. */
   showModel(model: Model, solids: Solid[]): void {
     for (const mount of this.mounts) this.scene.remove(mount);
     for (const mesh of this.meshes) mesh.material.dispose();
@@ -205,7 +205,7 @@ export class Space {
     this.dirty = true;
   }
 
-  /** Places every mount: x and y in mm, and cosine and sine of its angle, four numbers each. */
+  /** Places every mount by four numbers: x and y in mm, cosine and sine of its angle. */
   pose(places: Float64Array): void {
     this.mounts.forEach((mount, number) => {
       const [x = 0, y = 0, cos = 1, sin = 0] = places.subarray(4 * number, 4 * number + 4);
@@ -255,7 +255,7 @@ export class Space {
     this.grid.matrixWorldNeedsUpdate = true;
   }
 
-  /** The index of the foremost body at a point of the canvas, CSS pixels; null if there is none. */
+  /** Returns the index of the foremost body at a point of the canvas, CSS pixels; null if there is none. */
   private at(x: number, y: number): number | null {
     const { clientWidth, clientHeight } = this.canvas;
     const ray = new Raycaster();
@@ -266,7 +266,10 @@ export class Space {
   }
 }
 
-/** The colour of a printed part's servo, as in the drawing, or of a bought part's material. */
+/**
+ * Returns a body's colour: the colour of its servo, as in the drawing, for a printed part; else the colour of its
+ * material.
+ */
 function colour({ kind, servo }: BodyEntry): string {
   const { 'skin-edge': plate, tube, steel } = palette();
   switch (kind) {

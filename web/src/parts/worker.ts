@@ -1,4 +1,4 @@
-// The worker of the workshop: the parts in WebAssembly. A robot whose parts cannot be made is thrown as a `Refused`.
+// The web worker of the workshop: makes the robot's parts in WebAssembly. Throws a `Refused` if they cannot be made.
 import { expose, transfer } from 'comlink';
 import { zipSync } from 'fflate';
 
@@ -14,7 +14,7 @@ export interface Progress {
 /** The parts whose solids are shown; null until they are made. */
 let shown: Parts | null = null;
 
-/** Makes all files of a robot, by their paths. */
+/** Makes all files of a robot; returns their bytes by their paths. */
 function filesOf(parts: Parts, progress: (progress: Progress) => void): Record<string, Uint8Array> {
   const made: Record<string, Uint8Array> = {};
   const all = parts.entry().files;
@@ -38,13 +38,19 @@ const functions = {
     return transfer({ model: shown.entry(), solids }, solids.flatMap(({ corners, triangles }) => [corners.buffer, triangles.buffer]));
   },
 
-  /** The places of the mounts of the parts to show; null where a loop does not close. */
+  /** Returns the places of the shown parts' mounts; null without parts, or if a loop does not close. */
   pose: (angles: number[], lags: number[]) => shown?.pose(angles, lags) ?? null,
 
-  /** Proves that the parts of a robot fit; returns the least distance of two, mm. */
+  /**
+   * Proves that the parts of a robot fit; returns the least distance between two of them, mm, or null if no pair was
+   * checked.
+   */
   fit: (toml: string) => new Parts(toml).prove(() => {}) ?? null,
 
-  /** Proves that the parts fit, makes all files and packs them, or only those that are not the same for the robot `before`. */
+  /**
+   * Proves that the parts fit, makes all files and packs them; if `before` is a robot.toml, packs only files that
+   * differ from its files.
+   */
   make(toml: string, before: string | null, progress: (progress: Progress) => void) {
     const parts = new Parts(toml);
     const least = parts.prove((done, all) => progress({ doing: 'prove', done, all })) ?? null;

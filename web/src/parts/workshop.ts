@@ -8,9 +8,12 @@ import type { PartsFunctions, Progress } from './worker';
 
 export type { Meeting, Progress };
 export type Model = ModelEntry;
-/** The triangles of a solid: corners in mm, and three corner indices for each triangle. */
+/** The triangles of a solid: the corners' coordinates in mm, and three corner indices for each triangle. */
 export type Solid = { corners: Float32Array; triangles: Uint32Array };
-/** Files in an archive, the number of all files that the robot has, and the least distance that was proved, mm. */
+/**
+ * The archive with its paths, the number of all files of the robot, and the least proved distance between two parts,
+ * mm.
+ */
 export type Made = ReturnType<PartsFunctions['make']>;
 
 /** Thrown for a robot whose parts cannot be made; its message is for the user. */
@@ -29,7 +32,7 @@ class Workshop extends Helper<PartsFunctions> {
     super(new Worker(new URL('./worker.ts', import.meta.url), { type: 'module' }));
   }
 
-  /** Calls a function after loading the parts. */
+  /** Loads the WebAssembly module, then calls a function of the worker. */
   async first<Answer>(call: (parts: Remote<PartsFunctions>) => Promise<Answer>): Promise<Answer> {
     const module = await files.parts();
     await this.ask((parts) => parts.load(module));
@@ -45,7 +48,10 @@ export class Solids {
 
   private constructor(private readonly workshop: Workshop) {}
 
-  /** Makes the solids of a robot.toml, in the order of `BodyEntry.solid`. Throws the message of a robot that cannot be built. */
+  /**
+   * Makes the solids of a robot.toml, in the order of `BodyEntry.solid`. Throws {@link Unfit} for a robot that cannot
+   * be built.
+   */
   static async of(toml: string): Promise<{ solids: Solids; model: Model; meshes: Solid[] }> {
     const workshop = new Workshop();
     try {
@@ -57,7 +63,9 @@ export class Solids {
     }
   }
 
-  /** The places of all mounts; null if a loop does not close, or if another pose was requested meanwhile. */
+  /**
+   * Returns the places of all mounts; null if a loop does not close, or if the worker still computes an earlier pose.
+   */
   async pose(angles: number[], lags: number[]): Promise<Float64Array | null> {
     if (this.asking) return null;
     this.asking = true;
@@ -80,9 +88,15 @@ function work<Answer>(call: (parts: Remote<PartsFunctions>) => Promise<Answer>):
   return { answer: workshop.first(call).finally(() => workshop.end()), stop: () => workshop.end() };
 }
 
-/** Proves that the parts of a robot.toml fit: the least distance of two, mm. Throws {@link Unfit}. */
+/**
+ * Proves that the parts of a robot.toml fit; answers with the least distance between two, mm, null if no pair was
+ * checked. Throws {@link Unfit}.
+ */
 export const fit = (toml: string): Work<number | null> => work((parts) => parts.fit(toml));
 
-/** Proves that the parts fit, makes all files and packs them, or only those that are not the same for the robot `before`. */
+/**
+ * Proves that the parts fit, makes all files and packs them; if `before` is a robot.toml, packs only files that
+ * differ from its files.
+ */
 export const make = (toml: string, before: string | null, progress: (progress: Progress) => void): Work<Made> =>
   work((parts) => parts.make(toml, before, proxy(progress)));

@@ -1,5 +1,5 @@
-// Records a drive as the steps of a routine, from the robot's reports of its gait, pace and phase of the cycle. Times
-// are in seconds of `Session.clock`.
+// Records a drive as the steps of a routine, from the robot's reports of its gait, its pace and the phase of the
+// cycle. All times are in seconds of `Session.clock`.
 import type { Gait } from '../robot';
 import { GAITS, WORDS } from '../words';
 
@@ -9,14 +9,17 @@ const PAUSE = 0.5;
 const SHORTEST = 0.1;
 /** Error of a count of cycles since the last phase that the robot reported. */
 const SLACK = 0.05;
-/** Added before a count is rounded down to whole cycles; below 0.5, because a gait begins with a move to its first pose, which the count includes. */
+/**
+ * Added before a count is rounded down to whole cycles; below 0.5, because the count includes the move to the first
+ * pose with which a gait begins.
+ */
 const ROUNDING = 0.4;
 /** The robot's activities between gaits; a routine has only `stand` for them. */
 const PAUSES: string[] = ['', GAITS.stand, WORDS.stop, WORDS.pose, WORDS.center];
 
 interface Part {
   name: string;
-  /** Whole cycles; 0 for a part that is measured by time. */
+  /** Number of whole cycles; 0 for a part that is measured by time. */
   cycles: number;
   seconds: number;
 }
@@ -27,11 +30,11 @@ const isShort = (part: Part) => part.seconds < (isPause(part) ? PAUSE : SHORTEST
 
 export class Recorder {
   private parts: Part[] = [];
-  /** Cycles of the gait until the moment `counted`. */
+  /** Cycles of the current gait until the time `counted`. */
   private cycles = 0;
   private countedUntil: number;
 
-  /** Begins with the robot's activity and its pace, percent. */
+  /** Begins at the time `since` with the robot's activity `gait` and its pace, percent. */
   constructor(
     private readonly gaits: Gait[],
     private gait: string,
@@ -66,7 +69,7 @@ export class Recorder {
     this.cycles = Math.floor(this.cycles + ROUNDING - phase) + phase;
   }
 
-  /** The steps until now, from the first gait to the last one. */
+  /** Returns the steps until a time, from the first gait to the last one. */
   steps(at: number): string[] {
     const parts = this.partsUntil(at).filter((part) => !isShort(part));
     const first = parts.findIndex((part) => !isPause(part));
@@ -85,7 +88,7 @@ export class Recorder {
     this.countedUntil = at;
   }
 
-  /** All parts, the current activity as the last one. */
+  /** Returns all parts until a time, the current activity as the last one; successive pauses are one part. */
   private partsUntil(at: number): Part[] {
     this.count(at);
     const { parts, gait, currentGait } = this;

@@ -1,5 +1,5 @@
-// The robot's side of the first connection. Signs come before trims, because a servo with a wrong sign would turn
-// the wrong way. Nothing is stored before `save`; `restore` restores the old calibration.
+// The calibration of a robot at its first connection. Signs come before trims, because a servo with a wrong sign
+// would turn in the wrong direction. Nothing is stored before `save`; `restore` restores the old calibration.
 import type { Answer } from '../link/dialogue';
 import type { Link } from '../link/link';
 import { type Calibration, type Four, isSameCalibration, readCalibration, reversedServo, scaledServo, Transfer } from '../robot';
@@ -7,17 +7,17 @@ import type { Session } from '../session';
 import { status } from '../status';
 import { GAITS, WORDS } from '../words';
 
-/** Turns to try for proving a servo's sign, deg, until the robot accepts one. */
+/** Turns for proving a servo's sign, deg; tried in this order until the robot accepts one. */
 const SIGN_TURNS = [10, 5, -10, -5];
-/** Turns to try for measuring a servo's scale, deg. */
+/** Turns for measuring a servo's scale, deg; tried in this order until the robot accepts one. */
 const SCALE_TURNS = [20, -20, 15, -15, 10, -10];
-/** Longest wait for the end of a motion, ms, and the time between two questions. */
+/** Longest wait for the end of a motion, ms, and time from one `status` to the next, ms. */
 const MOTION_TIMEOUT = 5000;
 const POLL_INTERVAL = 60;
 /** Tolerance of a reached pose, deg. */
 const TOLERANCE = 0.02;
 
-/** Wraps an angle to 0 up to a turn, rounded to the console's hundredths, deg. */
+/** Wraps an angle to at least 0 and less than 360 deg, rounded to hundredths as on the console. */
 export function angle(degrees: number): number {
   return (((Math.round(degrees * 100) % 36_000) + 36_000) % 36_000) / 100;
 }
@@ -25,17 +25,17 @@ export function angle(degrees: number): number {
 /** Thrown with the robot's reason for a refusal. */
 export class Refusal extends Error {}
 
-/** Thrown if the board is not the one that this guide began with. */
+/** Thrown if the board is gone, has restarted or does not answer. */
 export class BoardChanged extends Error {}
 
 export class Guide {
-  /** The calibration at the beginning, or the one saved since. */
+  /** The calibration at the beginning, or the one that was saved since. */
   private before: Calibration;
   /** The current calibration. */
   private now: Calibration;
   private readonly link: Link;
   private readonly banners: number;
-  /** The robot's neutral angles, deg, known once it has stood. */
+  /** The robot's neutral angles, deg; null until it has stood. */
   private neutral: Four<number> | null = null;
 
   private constructor(
@@ -65,7 +65,7 @@ export class Guide {
     return this.now;
   }
 
-  /** True if a setting is not saved. */
+  /** True if the current calibration is not saved. */
   get isChanged(): boolean {
     return !isSameCalibration(this.before, this.now);
   }
@@ -81,19 +81,21 @@ export class Guide {
     await this.sendLine(WORDS.rest);
   }
 
-  /** Moves every servo to its middle without trim, for fitting the horns. */
+  /** Moves every servo to its middle, without its trim, for fitting the horns. */
   async center(): Promise<void> {
     await this.stand();
     await this.sendLine(WORDS.center);
     await settle(this.session);
   }
 
-  /** Turns one servo from its neutral angle; returns the turn, deg counter-clockwise. */
+  /** Turns one servo from its neutral angle far enough to see its sign; returns the turn, deg counter-clockwise. */
   async prove(servo: number): Promise<number> {
     return this.turnServo(servo, SIGN_TURNS);
   }
 
-  /** Turns one servo as far as measuring its scale needs; returns the turn, deg counter-clockwise. */
+  /**
+   * Turns one servo from its neutral angle far enough to measure its scale; returns the turn, deg counter-clockwise.
+   */
   async span(servo: number): Promise<number> {
     return this.turnServo(servo, SCALE_TURNS);
   }
@@ -113,7 +115,7 @@ export class Guide {
     throw refusal ?? new Refusal('there is no pose to turn it to');
   }
 
-  /** Points one servo to an angle, the others to neutral. */
+  /** Moves one servo to an angle, deg, and the others to neutral. */
   async point(servo: number, degrees: number): Promise<void> {
     const others = this.neutral ?? (await this.stand());
     const pose = others.map((neutral, place) => (place === servo ? degrees : neutral));
@@ -141,7 +143,10 @@ export class Guide {
     this.now = next;
   }
 
-  /** Sets a servo's scale from its `measured` turn for a commanded one, deg; returns it, us per deg. */
+  /**
+   * Sets a servo's scale from the turn that was `measured` for the commanded turn `asked`, deg; returns the scale, us
+   * per deg.
+   */
   async scale(servo: number, asked: number, measured: number): Promise<number> {
     await this.stand();
     const next = structuredClone(this.now);
@@ -189,7 +194,7 @@ export class Guide {
     try {
       await this.stand();
     } catch (error) {
-      // A refusal, for example by a low supply, must not keep the user here.
+      // A refusal, for example because of a low supply, must not prevent the restoring.
       if (!(error instanceof Refusal)) throw error;
     }
     if (!this.isChanged) return false;
@@ -197,7 +202,10 @@ export class Guide {
     return true;
   }
 
-  /** Sets another calibration, unsaved; a refused one changes nothing. Throws the robot's reason. */
+  /**
+   * Sets another calibration without saving it; if it is refused, the previous one is restored. Throws the robot's
+   * reason.
+   */
   async setCalibration(set: Calibration): Promise<void> {
     const had = structuredClone(this.now);
     try {
@@ -211,7 +219,10 @@ export class Guide {
     await settle(this.session);
   }
 
-  /** Sends the lines of a calibration. Throws the first refusal of those that remain. */
+  /**
+   * Sends the lines of a calibration; refused lines are sent again after the others. Throws a refusal if some are
+   * still refused.
+   */
   private async apply(set: Calibration): Promise<void> {
     const transfer = new Transfer(set);
     let refusal: Refusal | null = null;
@@ -242,7 +253,10 @@ async function sendLine(session: Session, line: string): Promise<Answer> {
   return answer;
 }
 
-/** Waits until the robot stands still, in a given pose if there is one; returns its pose, deg. */
+/**
+ * Waits until the robot stands still, in the pose `wanted` if given, but at most `MOTION_TIMEOUT`; returns its pose,
+ * deg.
+ */
 async function settle(session: Session, wanted: Four<number> | null = null): Promise<Four<number>> {
   const isThere = (pose: Four<number>) => wanted?.every((each, n) => Math.abs(((each - pose[n] + 540) % 360) - 180) < TOLERANCE) ?? true;
   const { link } = session;

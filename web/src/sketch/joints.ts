@@ -1,8 +1,8 @@
-// The bars and joints of a robot in its neutral pose, and the lengths that follow when a joint is dragged. Servos
-// keep their neutral angles, so the end of a crank moves along its crank.
+// The bars and joints of a robot in its neutral pose, and the lengths that result when a joint is dragged. Servos
+// keep their neutral angles, so a crank's tip moves along the crank.
 import type { Edits, Point, Scene } from '../robot';
 
-/** A bar between two points: its key in robot.toml. */
+/** A bar between two points, with the key of its length in robot.toml. */
 export interface Bar {
   key: string;
   from: Point;
@@ -13,7 +13,7 @@ export interface Bar {
 export interface Joint {
   name: string;
   at: Point;
-  /** The edits that put the joint at `to`. If `isSymmetric`, the other side changes with it. */
+  /** Returns the edits that put the joint at `to`. If `isSymmetric`, the mirrored lengths change, too. */
   lengthsAt(to: Point, isSymmetric: boolean): Edits;
 }
 
@@ -22,25 +22,25 @@ const linkKey = (n: number) => `links.l${n}`;
 const round = (mm: number) => Math.round(mm * 2) / 2;
 const distance = ([x, y]: Point, [u, v]: Point) => Math.hypot(x - u, y - v);
 
-/** Distance of `to` from `from` along the direction to `towards`. */
+/** Returns the distance of `to` from `from`, measured along the direction from `from` to `towards`. */
 function along(from: Point, towards: Point, to: Point): number {
   const length = distance(from, towards) || 1;
   return ((towards[0] - from[0]) * (to[0] - from[0]) + (towards[1] - from[1]) * (to[1] - from[1])) / length;
 }
 
-/** Each side's front and rear servo and the numbers of its lengths. */
+/** Each side's front and rear servo, and the numbers of its links in robot.toml. */
 const SIDES = [
   { name: 'left', front: 0, rear: 3, chassis: 10, rearArm: 11, rearHalf: 12, frontHalf: 13, frontArm: 14 },
   { name: 'right', front: 1, rear: 2, chassis: 15, rearArm: 16, rearHalf: 17, frontHalf: 18, frontArm: 19 },
 ] as const;
 
-/** Each end's left and right servo and the numbers of its lengths. */
+/** The left and right servo of each five-bar (head, tail), and the numbers of its links in robot.toml. */
 const ENDS = [
   { name: 'head', left: 0, right: 1, base: 0, leftCrank: 1, leftCoupler: 2, rightCoupler: 3, rightCrank: 4 },
   { name: 'tail', left: 3, right: 2, base: 5, leftCrank: 6, leftCoupler: 7, rightCoupler: 8, rightCrank: 9 },
 ] as const;
 
-/** The bars of the robot's loops and legs, in its neutral pose. */
+/** Returns the bars of the robot's loops and legs at the pose of the scene. */
 export function bars({ shafts, tips, points, sliders, legs }: Scene): Bar[] {
   const bar = (key: string, from: Point, to: Point): Bar => ({ key, from, to });
   return [
@@ -70,9 +70,12 @@ export function bars({ shafts, tips, points, sliders, legs }: Scene): Bar[] {
   ];
 }
 
-/** The joints that can be dragged; `value` is a length in robot.toml by its key, mm. */
+/** Returns the joints that can be dragged; `value` returns a length in robot.toml, mm, by its key. */
 export function joints({ shafts, tips, points, sliders, legs }: Scene, value: (key: string) => number): Joint[] {
-  /** Changes both halves of a slider with the distance of its ends, so that its travel is unchanged. */
+  /**
+   * Lengthens each half of a slider by half the change of the distance between its arm tips, so that its travel
+   * stays.
+   */
   const halves = (side: (typeof SIDES)[number], change: number): Edits => [
     [linkKey(side.rearHalf), round(value(linkKey(side.rearHalf)) + change / 2)],
     [linkKey(side.frontHalf), round(value(linkKey(side.frontHalf)) + change / 2)],

@@ -1,5 +1,5 @@
-// A simulated Arduino UNO that can be reset and flashed. The chip is the judge's, on avr8js; a reset makes a new
-// chip with the old memories.
+// A simulated Arduino UNO that can be reset and flashed. The chip is that of tools/judge, on avr8js; a reset makes a
+// new chip with the old memories.
 import { corrections } from '../../../tools/judge/src/corrections/index.js';
 import { load } from '../../../tools/judge/src/hex.js';
 import { receiveBuffer } from '../../../tools/judge/src/receive-buffer.js';
@@ -9,11 +9,11 @@ import { Uno } from '../../../tools/judge/src/uno.js';
 
 export const FREQUENCY = 16_000_000;
 
-/** Bits of a byte on the line. */
+/** Number of bits per byte on the serial line, with start and stop bit. */
 const BYTE_BITS = 10;
-/** A rate that differs by more than this share from the chip's garbles every byte. */
+/** Share by which a baud rate may differ from the chip's; beyond it every byte is garbled. */
 const RATE_ERROR = 0.045;
-/** A byte that is read at another rate than it was sent at: no text has it. */
+/** The byte in place of each one that is read at another baud rate than it was sent at; no text contains it. */
 const UNREADABLE = 0xfe;
 const MCUSR = 0x54;
 /** Address of the RAM, after the registers. */
@@ -30,17 +30,17 @@ class ChipReset extends Error {}
 export class SimulatedBoard {
   /** Called with each byte that the UNO has sent. */
   onByte: (byte: number) => void = () => {};
-  /** Called when a pulse has ended: pin, cycle of its rise, width in cycles. */
+  /** Called when a pulse has ended: Arduino number of the pin, cycle of the rise, width in cycles. */
   onPulse: (pin: number, rise: number, width: number) => void = () => {};
-  /** Called with each byte when the UNO has received it. */
+  /** Called with each byte that was sent to the UNO when it arrives, and the cycle. */
   onReceived: (byte: number, cycle: number) => void = () => {};
-  /** The rate at which the other end sends and reads, baud. */
+  /** The baud rate of the other side of the serial line. */
   baud = 115_200;
-  /** Number of bytes that the UNO's receiver lost. */
+  /** Number of bytes that the UNO's receiver has lost. */
   lost = 0;
 
   private uno!: Uno & { receive?(byte: number, isGarbled: boolean): boolean };
-  /** Cycles of the chips before the last reset. */
+  /** Cycles from power-on to the last reset. */
   private before = 0;
   private readonly line: number[] = [];
   private lineIsBusy = false;
@@ -49,8 +49,8 @@ export class SimulatedBoard {
   private readonly contacts = new Map<number, boolean>();
 
   /**
-   * Starts a UNO at power-on. `image` is the beginning of flash, `bootLoader` a HEX file, `rail` a channel of the
-   * converter and its volts, `eeprom` the content of another board's EEPROM.
+   * Starts a UNO at power-on. `image` is the beginning of flash, `bootLoader` a HEX file, `rail` the converter's
+   * channel for the servos' rail and the voltage at its pin, `eeprom` the content of a previous board's EEPROM.
    */
   constructor(
     image: Uint8Array | null,
@@ -92,7 +92,7 @@ export class SimulatedBoard {
     }
   }
 
-  /** Sends bytes to the UNO; they arrive one after the other. */
+  /** Sends bytes to the UNO; they arrive one by one, at the baud rate. */
   send(bytes: Iterable<number>): void {
     this.line.push(...bytes);
     this.carry();
@@ -146,7 +146,7 @@ export class SimulatedBoard {
     new Scope(uno, (pin: number, rise: number, width: number) => this.onPulse(pin, before + rise, width));
   }
 
-  /** True while chip and other end have different rates. */
+  /** True while the chip's baud rate and that of the other side differ too much. */
   private get isGarbled(): boolean {
     return Math.abs(this.uno.usart.baudRate / this.baud - 1) > RATE_ERROR;
   }

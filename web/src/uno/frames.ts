@@ -2,7 +2,7 @@
 import type { Four } from '../robot';
 import { FREQUENCY } from './board';
 
-/** Cycles after which a frame is over: four servos get their pulses one after the other, 4 ms each. */
+/** Cycles from a frame's first pulse after which the frame is over: four slots of 4 ms, one for each servo. */
 const FOUR_SLOTS = 0.0165 * FREQUENCY;
 
 export class Frames {
@@ -19,7 +19,7 @@ export class Frames {
   add(pin: number, rise: number, width: number): void {
     const servo = this.pins.indexOf(pin);
     if (servo < 0) return;
-    // The same servo again, or an earlier one, starts a new frame.
+    // A pulse of the same servo, or of one earlier in the order, starts a new frame.
     if (servo <= this.last) this.close();
     this.start ??= rise;
     this.last = servo;
@@ -27,7 +27,7 @@ export class Frames {
     if (servo === 3) this.close();
   }
 
-  /** Closes the frame if its time is over at this cycle, even if not all servos have had a pulse. */
+  /** Closes the frame if its time is over at a cycle, even if not all servos have had a pulse. */
   advanceTo(cycle: number): void {
     if (this.start !== null && cycle - this.start > FOUR_SLOTS) this.close();
   }

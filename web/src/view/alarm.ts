@@ -1,4 +1,4 @@
-// A robot that does not answer: the page shows an old state of it, and it may walk on. So a large alarm says so.
+// The alarm for a robot that does not answer: the page then shows an old state, and the robot may walk on.
 import { SILENCE } from '../link/dialogue';
 import { element } from './canvas';
 

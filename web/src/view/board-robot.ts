@@ -1,5 +1,5 @@
-// A board may hold another robot than the page shows, so that the page would draw and predict it wrongly. So the board's robot is
-// searched for and offered.
+// Warns that the board has another robot than the page, which would draw and predict it wrongly. Searches for the
+// board's robot and offers to show it.
 import { files } from '../files';
 import { kept } from '../kept';
 import { isRefused, Robot } from '../robot';
@@ -7,7 +7,7 @@ import type { Session } from '../session';
 import { nameOf } from './setup/board';
 import type { Troubles } from './troubles';
 
-/** A robot that the page can show: its file in the list, and its text, which the user may have changed. */
+/** A robot that the page can show: the name of its file, and its robot.toml, which the user may have changed. */
 interface Known {
   file: string;
   toml: string;
@@ -24,7 +24,7 @@ export class BoardRobot {
     private readonly show: (known: Known) => void,
   ) {}
 
-  /** Reports that the board has another robot, or removes that message if it has this one after all. */
+  /** Reports that the board has another robot; removes the message if it does not. */
   async follow(): Promise<void> {
     const session = this.session();
     const other = session.otherRobot;
@@ -36,7 +36,10 @@ export class BoardRobot {
     this.troubles.say('other', has, { label: `Show ${other.name}`, act: () => this.show(known) });
   }
 
-  /** Finds the robot with this hash among those that the user has put aside and the files of the list; null if there is none. */
+  /**
+   * Finds the robot with a hash among the robots that the user has put aside and the page's files; null if none has
+   * it.
+   */
   private async find(hash: string): Promise<Known | null> {
     const isIt = (toml: string) => {
       const read = this.reader.read(toml);

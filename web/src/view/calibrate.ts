@@ -18,7 +18,7 @@ export class Calibrate {
   private readonly box = element('calibration');
   private readonly message = element('cal-said');
   private rows: Row[] = [];
-  /** True after a line without an answer: the shown settings may not be the robot's. */
+  /** True after a line without an answer: the shown settings may differ from the robot's. */
   private isUnsure = false;
 
   constructor(private readonly session: () => Session) {

@@ -1,4 +1,4 @@
-// A canvas with the screen's resolution that follows the size of its element.
+// Canvases at the screen's resolution, which follow the size of their elements, and access to the page's elements.
 
 export interface Surface {
   pen: CanvasRenderingContext2D;
@@ -8,8 +8,8 @@ export interface Surface {
 }
 
 /**
- * Returns the cleared canvas in CSS pixels; null while its room or its panel is closed. An opaque canvas must be filled
- * by the caller, which saves blending.
+ * Returns a canvas with its context in CSS pixels; null while its room or its panel is closed. The canvas is cleared,
+ * except an opaque one: the caller must fill it. An opaque canvas saves blending.
  */
 export function surface(canvas: HTMLCanvasElement, opaque = false): Surface | null {
   const { clientWidth: width, clientHeight: height } = canvas;
@@ -28,8 +28,8 @@ export function surface(canvas: HTMLCanvasElement, opaque = false): Surface | nu
 }
 
 /**
- * Adds a circle to the path, as two halves: the SVG context draws an arc in the wrong direction while y points up,
- * which does not matter for a half.
+ * Adds a circle to the path, as two half circles: with the y axis upward, the context for SVG draws an arc in the
+ * wrong direction, which makes no difference for half circles.
  */
 export function circle(pen: CanvasRenderingContext2D, x: number, y: number, radius: number): void {
   pen.moveTo(x + radius, y);

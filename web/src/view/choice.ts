@@ -28,19 +28,21 @@ export class Choice {
     else this.own.remove();
   }
 
-  /** The number of the chosen robot among the user's own ones; null for a file. */
+  /** The index of the chosen robot among the user's own robots; null if a file is chosen. */
   get chosenOwn(): number | null {
     const number = [...this.own.children].indexOf(this.list.selectedOptions[0]);
     return number < 0 ? null : number;
   }
 
-  /** Lists the robots beside the page. Throws an error for the user if they are missing. */
+  /**
+   * Makes the list of the robots whose files come with the page. Throws an error for the user if the list is missing.
+   */
   static async load(): Promise<Choice> {
     const { all, tests } = await files.robots();
     return new Choice(all, tests);
   }
 
-  /** Calls back when the user has chosen. */
+  /** Calls `chosen` when the user has chosen a robot. */
   onChange(chosen: () => void): void {
     this.list.addEventListener('change', chosen);
   }
@@ -50,14 +52,14 @@ export class Choice {
     return this.robots.find((name) => name === this.list.value) ?? this.robots[0];
   }
 
-  /** Shows another robot by its file name; returns true if it is in the list. */
+  /** Selects a robot by its file name; returns true if it is in the list. */
   show(name: string): boolean {
     const isThere = this.robots.includes(name);
     if (isThere) this.list.value = name;
     return isThere;
   }
 
-  /** True if the user may choose. */
+  /** Allows or forbids the user to choose. */
   set enabled(isEnabled: boolean) {
     this.list.disabled = !isEnabled;
   }

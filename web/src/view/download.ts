@@ -3,8 +3,8 @@ import { type Floor, isRefused, type Refused, Robot } from '../robot';
 import { make } from './make';
 
 /**
- * Saves a robot.toml with this floor, mass and leg drive; null leaves those of the text. If they cannot be
- * written into it, the text is saved unchanged and the reason is returned.
+ * Saves a robot.toml with this floor, mass, feet and leg drive; for null, the text keeps its own values. If the
+ * values cannot be written into the text, it is saved unchanged and the reason is returned.
  */
 export function download(toml: string, floor: Floor | null): Refused | null {
   const whole = floor && Robot.editFloor(toml, floor);

@@ -6,14 +6,14 @@ import { WORDS } from '../words';
 import { element } from './canvas';
 import { make } from './make';
 
-/** Characters that fit on a button of the usual width. */
+/** Number of characters that fit on a button of the usual width. */
 const LONG = 13;
-/** Share of the torque-speed line from which the page warns that the servos have little reserve. */
+/** Share of the servos' torque-speed line from which the page warns of little reserve. */
 const TIGHT = 0.9;
 /** The longest text of a prediction; a button reserves room for it. */
 const LONGEST = '-999.9 mm, -99.9°';
 
-/** A displacement as a short text: mm forward, and degrees if it turns; '' for null. */
+/** Formats a displacement as a short text: mm forward, and degrees if it turns; '' for null. */
 export function short(displacement: Displacement | null): string {
   if (!displacement) return '';
   const parts = [
@@ -34,7 +34,7 @@ export class Drive {
   /** The commands of the buttons in index.html, which every robot has. */
   readonly words: string[] = [...document.querySelectorAll<HTMLElement>('[data-command]')].map(({ dataset }) => dataset.command ?? '');
 
-  /** Takes a function that sends a line and returns its answer, or null without one. */
+  /** `send` sends a line and resolves to its answer, or to null without an answer. */
   constructor(private readonly send: (line: string) => Promise<Answer | null>) {
     document.addEventListener('click', (event) => {
       const button = event.target instanceof Element ? event.target.closest<HTMLElement>('[data-command]') : null;
@@ -72,7 +72,7 @@ export class Drive {
     this.message.hidden = true;
   }
 
-  /** Shows a new prediction for the gait with this index. */
+  /** Shows the prediction of the gait with an index. */
   predicted(gait: number, prediction: GaitPrediction): void {
     const entry = this.buttons[gait];
     if (!entry) return;
@@ -81,7 +81,7 @@ export class Drive {
     this.showLine();
   }
 
-  /** Sets the pace of the robot, percent, for which the shares are shown. */
+  /** Sets the robot's pace, percent, for which the shares of the torque-speed line are shown. */
   speed(percent: number): void {
     if (percent === this.pace) return;
     this.pace = percent;

@@ -1,4 +1,4 @@
-// "Make it faster": searches a gait that walks faster than the edited one and offers it.
+// The button "Make it faster": searches for a gait that walks faster than the edited one, and offers it.
 import { files } from '../files';
 import { type Answer, type Best, FasterSearch } from '../gaits/faster';
 import type { Bars, Trial } from '../robot';
@@ -12,7 +12,7 @@ import { figures } from './trial';
 export interface Edited {
   gait(): Bars | null;
   setGait(gait: Bars): void;
-  /** Lets the found gait walk beside the previous one, and writes their figures. */
+  /** Lets the found gait walk beside the previous one, and writes their displacements into `output`. */
   compare(before: Bars, found: Bars, output: HTMLElement): Promise<void>;
 }
 
@@ -28,7 +28,7 @@ export class FasterView {
   private readonly result = element('faster-result');
   private readonly numbers = { rate: null as number | null, rounds: 5, seed: 1 };
   private search: FasterSearch | null = null;
-  /** The gait to beat, and its trial. */
+  /** The gait that the search has to beat, and its trial. */
   private reference: Bars | null = null;
   private before: Trial | null = null;
   private best: Best | null = null;
@@ -135,7 +135,7 @@ export class FasterView {
     this.result.hidden = false;
   }
 
-  /** Takes the found gait into the editor, or restores the previous one. */
+  /** Puts the found gait into the editor, or restores the gait that it replaced. */
   private takeOver(): void {
     const now = this.edited.gait();
     if (!now || !this.best) return;

@@ -1,5 +1,5 @@
-// The parts of changed lengths: a worker proves that they fit, also while a length is dragged. If they do not, the two that meet are
-// red in 3D, and the nearest lengths that fit are searched.
+// Checks that the robot's parts fit after a change of lengths, also while a length is dragged: a worker proves it. If
+// two parts come too close, they are shown in red in 3D, and the nearest lengths whose parts fit are searched.
 import type { Meeting } from '../parts/workshop';
 import { type Length, Robot } from '../robot';
 import type { Session } from '../session';
@@ -7,7 +7,7 @@ import { messageOf } from '../trouble';
 import { element } from './canvas';
 import type { PartsView } from './parts';
 
-/** Time after a change until its parts are made, ms: a joint that is dragged makes many. */
+/** Time without a further change until the parts are made, ms: dragging a joint makes many changes. */
 const QUIET = 400;
 /** Step of the lengths that are tried, mm. */
 const STEP = 0.5;
@@ -32,7 +32,7 @@ export class FitView {
   private readonly message = element('fit-said');
   private readonly use = element<HTMLButtonElement>('fit-use');
   private readonly where = element<HTMLButtonElement>('fit-where');
-  /** The last lengths that fit, of robots from the same file. */
+  /** The last lengths whose parts fit, of robots from the same file. */
   private fitting: Lengths = new Map();
   private wish: Wish | null = null;
   private timer = 0;
@@ -58,7 +58,7 @@ export class FitView {
     if (changed.length > 0) this.soon((work) => this.check(wanted, new Map(changed), work));
   }
 
-  /** Takes lengths that are being dragged, by their robot.toml; null for some with which it cannot walk. */
+  /** Takes the robot.toml of lengths that are being dragged; null if the lengths are refused. */
   follow(toml: string | null): void {
     this.begin();
     if (toml === null) return;
@@ -68,7 +68,10 @@ export class FitView {
     });
   }
 
-  /** Searches the least and the greatest value with which the parts fit, once the robot is known to fit. */
+  /**
+   * Searches for the least and the greatest value of the lengths `keys` with which the parts fit, once the robot is
+   * known to fit.
+   */
   findRange(keys: string[], range: [number, number], show: Wish['show']): void {
     this.wish = { keys, range, show };
     if (this.isFitting) {
@@ -106,7 +109,10 @@ export class FitView {
     return !(result instanceof Error);
   }
 
-  /** Returns the least distance of two parts, mm, or why they do not fit. */
+  /**
+   * Returns the least distance between two parts, mm, null if it is unknown, or the error that says why they do not
+   * fit.
+   */
   private async proved(toml: string, work: Work) {
     const { fit, Unfit } = await import('../parts/workshop');
     if (work.isOver) return null;
@@ -137,7 +143,7 @@ export class FitView {
     this.use.hidden = false;
   }
 
-  /** Searches the requested range. */
+  /** Searches for the requested range, if there is a request. */
   private async search(work: Work): Promise<void> {
     const { wish } = this;
     if (!wish) return;
@@ -154,7 +160,10 @@ export class FitView {
     show([least, most], `Can be printed from ${least} to ${most} ${unit}.`);
   }
 
-  /** Bisects between the last lengths that fit and the wanted ones, down to one step; `isOpen` if the wanted ones may fit, too. */
+  /**
+   * Bisects from the last lengths that fit to the wanted ones, down to one step. If `isOpen`, the wanted lengths are
+   * tried first.
+   */
   private async nearest(wanted: Lengths, work: Work, isOpen = false): Promise<{ lengths: Lengths; text: string }> {
     const { toml } = this.session();
     const between = (share: number): Lengths =>
@@ -193,7 +202,7 @@ export class FitView {
   }
 }
 
-/** Reports which parts meet, or else what cannot be made. */
+/** Returns the message that names the two parts that come too close, or else what cannot be made. */
 function refusal({ message, meeting }: { message: string; meeting: Meeting | null }): string {
   if (!meeting) return `These lengths cannot be printed: ${message.replace(/\.$/, '')}.`;
   const { first, second, mm } = meeting;

@@ -14,7 +14,7 @@ export class FlashView {
   private readonly question = element('flash-question');
   readonly progress = element<HTMLProgressElement>('flash-progress');
   readonly message = element('flash-said');
-  /** The chosen file's image until the user confirms or rejects it; else null. */
+  /** The image of the chosen file until the user confirms or rejects it; null without one. */
   private chosen: Uint8Array | null = null;
 
   constructor(
@@ -47,7 +47,7 @@ export class FlashView {
     this.note.textContent = link.kind === 'radio' ? byRadio : byCable;
   }
 
-  /** Scrolls to the panel and writes the robot, robot and firmware, or an image. */
+  /** Scrolls to the panel and writes the robot, firmware and robot, or the image of a file. */
   write(what: WriteContent): void {
     reveal(this.note);
     this.message.scrollIntoView({ block: 'nearest' });

@@ -5,25 +5,25 @@ import { drawLizard } from './lizard';
 import { onPaletteChange, palette } from './palette';
 
 const GRID = 50;
-/** Least zoom, CSS pixels per mm: the robot, some 250 mm long, stays larger than 60 pixels. */
+/** Least and greatest zoom, CSS pixels per mm: a robot of about 250 mm stays longer than 60 pixels. */
 const LEAST_ZOOM = 0.25;
 const MOST_ZOOM = 8;
-/** Width of the first view, mm. */
+/** Least width and height of the view while the zoom follows the canvas, mm. */
 const VIEW = 420;
-/** Longest track, points, and their least distance, mm. */
+/** Largest number of points of a track, and their least distance, mm. */
 const LONGEST_TRACK = 6000;
 const TRACK_STEP = 0.5;
 
-/** Distance of a second robot's start to the right, mm. */
+/** Distance from the robot's start to the second robot's start, to the right, mm. */
 const SECOND_OFFSET = 280;
 
-/** Distance from its goal at which the view stops moving, mm: a tenth of a pixel at the most zoom. */
+/** Distance from its goal at which the view stops moving, mm: a tenth of a pixel at the greatest zoom. */
 const AT_GOAL = 0.01;
 
 /** Sideways movement after which a finger drags the floor, CSS pixels. */
 const DRAG_THRESHOLD = 12;
 
-/** The label of the scale and its place, CSS pixels. */
+/** The label of the scale bar and its place, CSS pixels. */
 interface Label {
   text: string;
   x: number;
@@ -41,7 +41,7 @@ export class Floor {
   private centre = { x: 0, y: 0 };
   /** Zoom, CSS pixels per mm; 0 until the canvas has a size. */
   private zoom = 0;
-  /** True while the zoom follows the size of the canvas; false once the user has chosen one. */
+  /** True while the zoom follows the size of the canvas; false once the user has chosen a zoom. */
   private fits = true;
   private following = true;
   /** The tracks of the robot and of the second robot. */
@@ -99,7 +99,7 @@ export class Floor {
     this.centre = { x: 0, y: 0 };
   }
 
-  /** Adds a point to the track of the robot, or of the second one. */
+  /** Adds a place to the track of the robot, or of the second robot. */
   addToTrack({ x, y }: Place, second = false): void {
     const track = this.tracks[second ? 1 : 0] ?? [];
     const last = track[track.length - 1];
@@ -115,7 +115,7 @@ export class Floor {
     this.shown = [plate, frame, second];
     if (this.fits) this.zoom = Math.min(width / (VIEW + (second ? SECOND_OFFSET : 0)), height / VIEW);
     if (this.following && frame) this.followTo(frame.place, second && second.place);
-    // The scale of the picture, for tests.
+    // Tests read the scale of the picture.
     const zoom = this.zoom.toFixed(4);
     if (this.canvas.dataset.zoom !== zoom) this.canvas.dataset.zoom = zoom;
     const robots = [frame, second].map((robot) => robot && [robot.place, robot.scene, robot.slides]);
@@ -131,7 +131,10 @@ export class Floor {
     this.painted = picture;
   }
 
-  /** Moves the view towards the robot, or the middle of two: smoothed, so that a step does not shake it. */
+  /**
+   * Moves the view towards the robot, or towards the middle between two robots; smoothed, so that the gait does not
+   * shake it.
+   */
   private followTo(robot: Place, second: Place | null): void {
     const goal = second ? { x: (robot.x + second.x + SECOND_OFFSET) / 2, y: (robot.y + second.y) / 2 } : robot;
     const [x, y] = [goal.x - this.centre.x, goal.y - this.centre.y];
@@ -139,13 +142,16 @@ export class Floor {
     this.centre = { x: this.centre.x + x * share, y: this.centre.y + y * share };
   }
 
-  /** Widens the view to two robots. */
+  /** Resets the view, so that it shows both robots. */
   fitTwoRobots(): void {
     this.fits = true;
     this.follow(true);
   }
 
-  /** Draws the last picture with another context in CSS pixels, for SVG; the caller adds the label of the scale. */
+  /**
+   * Draws the last picture with another context in CSS pixels, for SVG. Returns the label of the scale bar, which the
+   * caller adds.
+   */
   redraw(pen: CanvasRenderingContext2D): Label {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     return this.paint(pen, width, height);
@@ -202,7 +208,7 @@ export class Floor {
     pen.beginPath();
     track.forEach(({ x, y }, n) => (n === 0 ? pen.moveTo(x, y) : pen.lineTo(x, y)));
     pen.stroke();
-    // The start.
+    // Marks the start.
     pen.beginPath();
     circle(pen, 0, 0, 4);
     pen.moveTo(-9, 0);
@@ -214,7 +220,7 @@ export class Floor {
 
   private ruler(pen: CanvasRenderingContext2D, height: number): Label {
     const length = [10, 50, 100, 500].find((mm) => mm * this.zoom > 50) ?? 1000;
-    // To the right of the stick.
+    // To the right of the on-screen stick.
     const [x, y] = [124, height - 18];
     pen.strokeStyle = palette().ink;
     pen.lineWidth = 1.5;

@@ -1,4 +1,4 @@
-// The gait editor: the circle is the cycle, and each leg is a bar on it.
+// The gait editor: a circle stands for the cycle, and a bar on it for the stance of each leg.
 import { kept } from '../kept';
 import { type Bars, type Description, type Four, Robot } from '../robot';
 import type { Session } from '../session';
@@ -11,12 +11,12 @@ import { TrialView } from './trial';
 import type { Writer } from './writer';
 
 const LEGS = ['LF', 'RF', 'RH', 'LH'] as const;
-/** The mirrored leg of each leg. */
+/** The index of the leg on the other side, for each leg. */
 const OPPOSITE = [1, 0, 3, 2] as const;
-/** Radii of the four rings and width of a bar, in units of the picture. */
+/** Radii of the four legs' rings, and width of a bar, in units of the picture. */
 const RINGS = [104, 82, 60, 38] as const;
 const WIDE = 16;
-/** Length of the bar of a leg that holds, as a share of the cycle. */
+/** Length of a leg's bar in a gait whose legs hold, as a share of the cycle. */
 const HELD = 0.25;
 const SVG = 'http://www.w3.org/2000/svg';
 
@@ -142,7 +142,10 @@ export class GaitsView {
     }
   }
 
-  /** Calls back with the angle that a pointer has moved since it went down, in cycles. */
+  /**
+   * Calls `move` with the angle by which the pointer has dragged the mark, in cycles, and the gait at the beginning
+   * of the drag.
+   */
   private drag(mark: SVGElement, move: (by: number, beginning: Bars) => void): void {
     let last = 0;
     let by = 0;
@@ -194,7 +197,7 @@ export class GaitsView {
   }
 }
 
-/** The point of a ring at a phase: 0 is at the top, clockwise. */
+/** Returns the point of a ring at a phase; phase 0 is at the top, and phases increase clockwise. */
 function at(radius: number, phase: number): [number, number] {
   const angle = 2 * Math.PI * phase;
   return [radius * Math.sin(angle), -radius * Math.cos(angle)];

@@ -22,7 +22,7 @@ export class Health {
     setInterval(() => void this.ask(), PERIOD);
   }
 
-  /** True while something else uses the line. */
+  /** True while something else, such as the boot loader, uses the link. */
   isPaused = false;
 
   private async ask(): Promise<void> {

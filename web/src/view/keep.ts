@@ -1,4 +1,4 @@
-// The panel that records runs, saves pictures, and lets a second robot walk beside the first.
+// The panel that records runs, saves pictures and films, and lets a second robot walk beside the first.
 import { Companion } from '../companion';
 import { wakeWith } from '../gaits/try';
 import { LONGEST, Recording } from '../recording';
@@ -13,7 +13,7 @@ import type { Floor } from './floor';
 import { palette } from './palette';
 import { isShown } from './rooms';
 
-/** Film formats, the smallest first. */
+/** MIME types of films with their file extensions; the one with the smallest files is first. */
 const FILMS = [
   ['video/webm;codecs=vp9', 'webm'],
   ['video/webm;codecs=vp8', 'webm'],
@@ -21,7 +21,7 @@ const FILMS = [
   ['video/mp4', 'mp4'],
 ] as const;
 
-/** Duration of a frame of the core, s. */
+/** Duration of a frame of the firmware's core, s. */
 const FRAME = 0.02;
 
 /** Two robots that walk side by side: the first is the page's own. */
@@ -29,9 +29,9 @@ interface Pair {
   /** The robot.toml of the second one. */
   toml: string;
   gaits: [string, string];
-  /** Their name in the figures. */
+  /** The robots' names in the text that compares them. */
   names: [string, string];
-  /** The element for the figures. */
+  /** The element that shows the comparison. */
   output: HTMLElement;
 }
 
@@ -42,18 +42,21 @@ export class Keep {
   private readonly otherGait = element<HTMLSelectElement>('other');
   private recording: Recording | null = null;
   private isRecording = false;
-  /** Start of the replay, ms of real time, and the moment it started from, s; null while it is paused or off. */
+  /**
+   * Real time at which the replay started, ms, and the recording's time there, s; null while the replay is paused or
+   * off.
+   */
   private playing: { since: number; from: number } | null = null;
   private isReplaying = false;
   private film: MediaRecorder | null = null;
   private companion: Companion | null = null;
   private pair: Pair | null = null;
-  /** True until the robot begins its gait, with which the companion begins. */
+  /** True until the robot begins its gait; the companion then begins, too. */
   private isWaiting = false;
   private pendingTime = 0;
   private onDrawn: (() => void) | null = null;
 
-  /** Takes functions that send a line and that return the pace, percent. */
+  /** `ask` sends a line, and `pace` returns the pace, percent. */
   constructor(
     private readonly session: () => Session,
     private readonly floor: Floor,
@@ -135,14 +138,14 @@ export class Keep {
     return this.companion?.frame ?? null;
   }
 
-  /** Called after a picture was drawn on the floor. */
+  /** Takes a requested picture; called after each drawing of the floor. */
   drawn(): void {
     this.onDrawn?.();
     this.onDrawn = null;
     this.floor.paintsAlways = this.film !== null;
   }
 
-  /** Updates the numbers, some times a second. */
+  /** Updates the numbers; called several times per second. */
   write(): void {
     const { recording, companion, pair } = this;
     if (recording && isShown(this.panel)) {
@@ -182,7 +185,7 @@ export class Keep {
     this.updateButtons();
   }
 
-  /** Takes a picture of the next drawing, even behind the robot in 3D. */
+  /** Requests that `take` is called after the next drawing, even if the robot in 3D hides the floor. */
   private takePicture(take: () => void): void {
     this.onDrawn = take;
     this.floor.paintsAlways = true;
@@ -243,7 +246,7 @@ export class Keep {
     return { toml: this.session().toml, gaits, names: [gaits[0], `Beside it, ${gaits[1]}`], output: element('keep-said') };
   }
 
-  /** Lets a gait that was found walk beside the one before it; the robot takes the found one. */
+  /** Lets the page's robot walk a found gait, and the second robot the gait before it. */
   async compare(before: Bars, found: Bars, output: HTMLElement): Promise<void> {
     const session = this.session();
     const toml = session.robot.putGait(session.toml, before);
@@ -254,7 +257,7 @@ export class Keep {
     await this.startBoth({ toml, gaits: [gait, gait], names: ['Found', 'Before'], output });
   }
 
-  /** Starts both robots in the same frame, each from its own start. */
+  /** Starts both robots in the same frame, each from its own starting place. */
   private async startBoth(pair: Pair): Promise<void> {
     const session = this.session();
     const { toml, floor, servos, volts } = session;

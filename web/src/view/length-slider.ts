@@ -1,9 +1,10 @@
-// One length as a slider, from the least to the greatest with which the robot walks; those that can be printed are marked.
+// A slider for one length. It covers the values with which the robot walks; the values whose parts can be printed are
+// marked.
 import type { Edits, Length } from '../robot';
 import { element } from './canvas';
 import { withTwin } from './tried-lengths';
 
-/** Takes lengths while the slider is dragged and at the end. */
+/** Called with the slider's lengths while it is dragged, and with `isLast` at the end of the drag. */
 export type TryOut = (edits: Edits, isLast: boolean) => void;
 
 export class LengthSlider {
@@ -13,10 +14,10 @@ export class LengthSlider {
   private readonly printed = element('length-printed');
   private readonly marks = element('length-marks');
   private lengths: Length[] = [];
-  /** True once the user has chosen a length; before, no time is spent on proving which lengths can be printed. */
+  /** True once the user has chosen a length; until then no time is spent on proving which values can be printed. */
   isChosen = false;
 
-  /** `onChoice` is called for another length, or another twin. */
+  /** `onChoice` is called when the user chooses another length, or switches the symmetry of left and right. */
   constructor(
     tryOut: TryOut,
     private readonly onChoice: () => void,
@@ -33,7 +34,7 @@ export class LengthSlider {
     this.slide.addEventListener('change', () => moved(true));
   }
 
-  /** The lengths that the slider sets. */
+  /** The keys of the lengths that the slider sets: the chosen length and, with symmetry, its twin. */
   get keys(): string[] {
     return withTwin(this.key, 0, this.lengths, this.symmetric.checked).map(([key]) => key);
   }
@@ -63,13 +64,13 @@ export class LengthSlider {
     if (length) this.write(length.value);
   }
 
-  /** Sets the ends, with which the robot walks. */
+  /** Sets the slider's range: the least and the greatest value with which the robot walks. */
   setRange([smallest, largest]: [number, number]): void {
     Object.assign(this.slide, { min: String(smallest), max: String(largest) });
     if (this.length) this.write(this.length.value);
   }
 
-  /** Marks the values that can be printed; null while they are not known. */
+  /** Marks the values that can be printed and shows a message; null while the values are unknown. */
   mark(range: [number, number] | null, message: string): void {
     this.printed.textContent = message;
     this.marks.hidden = range === null;

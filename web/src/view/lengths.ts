@@ -1,4 +1,4 @@
-// The robot's lengths as numbers: a change makes a new robot or is refused.
+// The robot's lengths as number inputs: a change makes a new robot or is refused.
 import { type Edits, type Length, Robot } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
@@ -12,7 +12,7 @@ export class Lengths {
   private readonly refusal = element('lengths-refusal');
   private inputs = new Map<string, HTMLInputElement>();
 
-  /** `offer` searches valid lengths when some are refused. */
+  /** `offer` searches for valid lengths in place of refused ones. */
   constructor(
     private readonly session: () => Session,
     private readonly offer: (edits: Edits) => void,
@@ -55,7 +55,7 @@ export class Lengths {
     if (!refusal) return void (await session.change(text));
     const { lengths } = session.description;
     const kept = lengths.filter((length) => edits.some(([each]) => each === length.key));
-    // The boxes show the robot's numbers again.
+    // The inputs show the robot's lengths again.
     for (const length of kept) {
       const box = this.inputs.get(length.key);
       if (!box) continue;

@@ -1,4 +1,4 @@
-// Draws the lizard from above in mm of its own frame: x to the right, y forward.
+// Draws the robot from above, in mm of the chassis frame: x to the right, y forward.
 import type { Plate, Scene, Point } from '../robot';
 import { circle } from './canvas';
 import { palette, servoColour } from './palette';
@@ -6,7 +6,7 @@ import { palette, servoColour } from './palette';
 /** Radius of a foot and width of the plate's edge, mm. */
 const FOOT = 6;
 const RIM = 0.6;
-/** Movement per frame beyond which a foot slips, mm. */
+/** Slide in a frame beyond which a foot counts as slipping, mm. */
 const SLIPS = 0.3;
 
 type Pen = CanvasRenderingContext2D;
@@ -32,7 +32,7 @@ function disc(pen: Pen, [x, y]: Point, mm: number, fill: string, edge?: string):
   pen.stroke();
 }
 
-/** Turns of a spring and its half width, mm. */
+/** Number of turns of a drawn spring, and half its width, mm. */
 const TURNS = 5;
 const COIL = 2.4;
 
@@ -82,7 +82,7 @@ function skin(pen: Pen, scene: Scene): void {
 
 const SERVOS = [0, 1, 2, 3];
 
-/** Draws the bodies beside and below the plate: feet, their leaves, couplers. */
+/** Draws a leg's bodies beside and below the plate: foot, leaf and coupler. */
 function foot(pen: Pen, scene: Scene, servo: number, slide: number): void {
   const colours = palette();
   const { joints, foot } = scene.legs[servo];
@@ -95,7 +95,7 @@ function foot(pen: Pen, scene: Scene, servo: number, slide: number): void {
   bar(pen, joints[0], joints[1], servoColour(servo), 4.2);
 }
 
-/** Draws the plate with the arms of the legs' pivots, and its servos. */
+/** Draws the plate, its arms that carry the legs' pivots, and the servos' cases. */
 function chassis(pen: Pen, plate: Plate): void {
   const colours = palette();
   const [wide, long] = plate.half;
@@ -117,7 +117,7 @@ function chassis(pen: Pen, plate: Plate): void {
   });
 }
 
-/** Draws the bodies above the plate: crank, follower and strut. */
+/** Draws a leg's bodies above the plate: crank, follower and strut. */
 function leg(pen: Pen, scene: Scene, servo: number): void {
   const colours = palette();
   const { pivots, joints, strut, sprung } = scene.legs[servo];

@@ -1,4 +1,4 @@
-// The console: the lines of the serial line, and an input.
+// The console: the lines that were sent and received, and an input for a line.
 import { element } from './canvas';
 import { make } from './make';
 

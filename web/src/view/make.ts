@@ -19,14 +19,14 @@ export function button(label: string, act: () => void, isMain = false): HTMLButt
   return make('button', { type: 'button', className: isMain ? 'main' : '', onclick: act }, label);
 }
 
-/** Makes a number box; `act` gets the number that the user enters. */
+/** Makes a labelled number input; `act` is called with each number that the user enters. */
 export function number(label: string, value: number | null, step: string, act: (value: number) => void): HTMLElement {
   const box = make('input', { type: 'number', step, value: String(value ?? '') });
   box.addEventListener('change', () => Number.isFinite(box.valueAsNumber) && act(box.valueAsNumber));
   return make('label', { className: 'number' }, label, ' ', box);
 }
 
-/** Makes a row of a table, whose first cell names it. */
+/** Makes a row of a table; its first cell is the row's heading. */
 export function tableRow([head = '', ...cells]: string[]): HTMLElement {
   return make('tr', {}, make('th', { scope: 'row' }, head), ...cells.map((text) => make('td', {}, text)));
 }

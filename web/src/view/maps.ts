@@ -1,16 +1,16 @@
-// The maps of singularities of head and tail, and the robot's position on them.
+// The maps of the singularities of head and tail, with the robot's current position on each map.
 import type { Robot, Scene, SingularityMap } from '../robot';
 import { element, surface } from './canvas';
 import { onPaletteChange, palette } from './palette';
 
-/** Positions of the last frames that are drawn as a trail. */
+/** Number of frames whose positions are drawn as a trail. */
 const TRAIL = 100;
 
 class MapView {
   private readonly canvas: HTMLCanvasElement;
   private map: SingularityMap | null = null;
   private trail: [number, number][] = [];
-  /** The map without the dot; drawn once for a size. */
+  /** The map without trail and dot, drawn once for each size of the canvas. */
   private still: HTMLCanvasElement | null = null;
 
   constructor(private readonly end: number) {

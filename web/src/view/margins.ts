@@ -29,7 +29,7 @@ export class MarginsView {
     });
   }
 
-  /** Writes the numbers, which costs a layout. */
+  /** Updates the numbers, for which the browser must lay out the page again. */
   write(scene: Scene | null): void {
     if (!isShown(this.panel)) return;
     this.bars.forEach(({ value }, n) => {

@@ -1,4 +1,5 @@
-// The room in which a camera measures the robot: what it sees, the protocol or a film of somebody, and the results.
+// The room in which a camera measures the robot: the camera's picture, the page's protocol or the user's own film,
+// and the results.
 import { transfer } from 'comlink';
 
 import type { AskedWalk } from '../../generated/measure';
@@ -20,7 +21,7 @@ import { numberInput, putNumber, type Range } from './number';
 import { OPENED } from './rooms';
 import { drawSight } from './sight';
 
-/** Least way of a cycle of a gait that goes somewhere: mm, deg. */
+/** Least displacement per cycle of a gait that is ticked by default: mm ahead or deg of turn. */
 const LEAST = { way: 3, turn: 2 };
 const NUMBERS: Record<string, Range & { value: number | null }> = {
   speed: { min: 10, max: 100, step: 5, value: 100 },
@@ -30,7 +31,10 @@ const NUMBERS: Record<string, Range & { value: number | null }> = {
   ruler: { min: 85, max: 115, step: 0.1, value: 100 },
 };
 
-/** `record` keeps the camera's pictures until the user is done, `drive` while the page drives, `play` those of a film file. */
+/**
+ * `record` keeps the camera's pictures until the user is done, `drive` keeps them while the page drives, `play` reads
+ * a film file.
+ */
 type Doing = 'nothing' | 'record' | 'drive' | 'play' | 'compute';
 
 type Film = Helper<FilmFunctions>;
@@ -60,12 +64,12 @@ export class MeasureView {
   private protocol: Protocol | null = null;
   /** True while the robot is put back by hand, which does not belong to the film. */
   private isPutBack = false;
-  /** True if the film of a file can be measured again. */
+  /** True if a film file was read, whose pictures can be measured again. */
   private hasFilm = false;
-  /** The gaits that the user has ticked or not. */
+  /** The gaits that the user has ticked (true) or unticked (false). */
   private readonly ticked = new Map<string, boolean>();
 
-  /** Takes the predictions of gaits so far, and a function that is true while hands are in the robot. */
+  /** `choices` returns the gaits predicted so far; `isBarred` returns true while hands may be in the robot. */
   constructor(
     private readonly session: () => Session,
     private readonly choices: () => { command: string; displacement: GaitPrediction }[],
@@ -110,25 +114,25 @@ export class MeasureView {
     this.predicted();
   }
 
-  /** Ticks the gaits that go somewhere, once that is known. */
+  /** Ticks the gaits with a displacement, as far as predicted; the user's own ticks stay. */
   predicted(): void {
     const goes = new Map(this.choices().map(({ command, displacement: { forward, turn } }) => [command, Math.abs(forward ?? 0) >= LEAST.way || Math.abs(turn ?? 0) >= LEAST.turn]));
     for (const box of this.boxes.querySelectorAll('input')) box.checked = this.ticked.get(box.name) ?? goes.get(box.name) ?? false;
   }
 
-  /** Ends driving for a reason from outside, and stops the robot. */
+  /** Ends driving for an external reason, and stops the robot. */
   stop(why: string): void {
     this.protocol?.stop(why);
   }
 
-  /** Takes another link: a real robot is driven by the page. */
+  /** Takes another link; by default the page drives a real robot. */
   link(isReal: boolean): void {
     this.protocol?.end('the link to the robot has changed');
     this.driver.value = isReal ? 'page' : 'other';
     this.show();
   }
 
-  /** Takes a line that was sent to the robot, its lines, and its activity. */
+  /** Takes a line that was sent to the robot. */
   sent(line: string): void {
     this.protocol?.sent(line);
   }
@@ -141,7 +145,7 @@ export class MeasureView {
     this.protocol?.setActivity(activity);
   }
 
-  /** Updates words some times a second. */
+  /** Updates the text about the last pictures; called several times per second. */
   write(): void {
     if (this.room.hidden || this.view.hidden) return;
     const { rate, trouble, ms } = this.seen;
@@ -156,7 +160,7 @@ export class MeasureView {
     return this.film;
   }
 
-  /** Does what the user has asked for, and shows why it cannot be done. */
+  /** Runs an action that the user has asked for; shows the reason if it fails. */
   private async tell(act: () => Promise<void>): Promise<void> {
     try {
       await act();
@@ -184,7 +188,7 @@ export class MeasureView {
     this.say('Place the camera so that all five tags are seen.');
   }
 
-  /** Switches the camera off and ends what uses it. */
+  /** Switches the camera off and ends the activity that uses it. */
   private leave(): void {
     this.stop('the camera was switched off');
     this.source.stop();
@@ -223,13 +227,13 @@ export class MeasureView {
     }
   }
 
-  /** The chosen gait in the whole film; no walk if its gaits are to be found by their paths. */
+  /** The chosen gait in the whole film as one walk; empty if the gaits are to be recognized by their paths. */
   private get whole(): AskedWalk[] {
     const gait = this.gait.value;
     return gait === '' ? [] : [{ gait, during: null }];
   }
 
-  /** Starts to record or to drive; ends that; or measures the file again. */
+  /** Acts as the start button says: starts or ends recording or driving, or measures the film file again. */
   private async start(): Promise<void> {
     if (this.doing === 'record') return this.compute(this.whole);
     if (this.doing === 'drive') return void this.session().ask(WORDS.stop);
@@ -244,7 +248,7 @@ export class MeasureView {
     this.say('Recording. Let the robot walk at least four cycles, then press Done.');
   }
 
-  /** The gaits to drive. Throws the reason why none can be. */
+  /** Returns the ticked gaits. Throws the reason why the page cannot drive. */
   private drivable(): Gait[] {
     const session = this.session();
     const ticked = [...this.boxes.querySelectorAll('input')].filter(({ checked }) => checked).map(({ name }) => name);
@@ -286,7 +290,7 @@ export class MeasureView {
     }
   }
 
-  /** Walks under the names of their gaits in robot.toml. */
+  /** Converts walks: their gaits' commands become the names in robot.toml. */
   private named(walks: Walk[]): AskedWalk[] {
     const { gaits } = this.session().description;
     return walks.map(({ gait, during }) => ({ gait: gaits.find(({ command }) => command === gait)?.name ?? gait, during }));
@@ -304,7 +308,7 @@ export class MeasureView {
     this.isPutBack = false;
   }
 
-  /** Measures walks in the film, and shows the results, what went wrong before, and what could not be measured. */
+  /** Measures walks in the film; shows the results, `troubles` and the reasons why walks could not be measured. */
   private async compute(walks: AskedWalk[], speed = this.values.speed ?? 100, troubles: string[] = []): Promise<void> {
     this.doing = 'compute';
     this.say('Measuring…');
@@ -330,7 +334,7 @@ export class MeasureView {
     this.say('sheet.pdf: print it at 100 % ("actual size"), then measure the line of 100 mm on it.');
   }
 
-  /** Shows what can be done now. */
+  /** Shows the controls that can be used now. */
   private show(): void {
     const { doing, source, hasFilm } = this;
     const isPage = this.driver.value === 'page' && !hasFilm;

@@ -1,4 +1,4 @@
-// The results of the room that measures: a table, and the same to keep, to share and to print.
+// The results of the room Measure: tables on the page, and files to keep, to share and to print.
 import { card, csv, heads, rangeOf, rows, titleOf } from '../measure/card';
 import type { Report } from '../../generated/measure';
 import { element } from './canvas';

@@ -7,7 +7,7 @@ import type { Troubles } from './troubles';
 const nameIn = (toml: string) => /^name\s*=\s*["'](.+?)["']/m.exec(toml)?.[1] ?? 'robot';
 
 export class OwnRobot {
-  /** `choose` loads a robot of the list by its file name; `list` shows the names of the robots that are put aside. */
+  /** `choose` loads a robot by its file name; `list` shows the names of the robots that are put aside. */
   constructor(
     private readonly session: () => Session,
     private readonly troubles: Troubles,
@@ -17,7 +17,10 @@ export class OwnRobot {
     this.show();
   }
 
-  /** Puts the user's previous robot aside, if another one has replaced it, and offers to restore it. */
+  /**
+   * Puts the user's previous robot aside if it was changed and another robot has replaced it, and offers to restore
+   * it.
+   */
   putAside(before: SavedChanges | null): void {
     if (!before || before.toml === before.original || before.toml === this.session().toml) return;
     this.setAside([before, ...kept.aside().filter(({ toml }) => toml !== before.toml)]);
@@ -33,7 +36,7 @@ export class OwnRobot {
     const before = kept.get();
     await this.choose(own.file);
     const session = this.session();
-    // Its file may be another one by now.
+    // If its file has changed since, the stored text itself is loaded.
     if (!(await session.recall(own)) && (await session.change(own.toml))) return;
     this.setAside(all.filter((_, n) => n !== number));
     this.putAside(before);

@@ -1,11 +1,11 @@
-// The pace of all gaits: the slider's value, and the pace that the robot reports.
+// The slider for the pace of all gaits; it also shows the pace that the robot reports.
 import { WORDS } from '../words';
 import { element } from './canvas';
 
 export class Pace {
   private readonly slider = element<HTMLInputElement>('speed');
   private readonly out = element('speed-out');
-  /** True while the user holds the slider, or its line has no answer. */
+  /** True while the user holds the slider, or the line with its value has no answer. */
   private isHeld = false;
 
   /** `ask` sends a line and resolves with its answer. */

@@ -1,4 +1,4 @@
-// The colours of style.css, for canvases. Light and dark are decided there alone.
+// The colours of style.css, for canvases. Only style.css decides which colours light and dark mode have.
 
 const NAMES = [
   'card', 'ink', 'soft', 'line', 'floor', 'grid', 'skin', 'skin-edge', 'frame', 'frame-edge', 'steel', 'tube',
@@ -18,7 +18,7 @@ export function palette(): Palette {
   return known;
 }
 
-/** Calls back when the colour scheme changes between light and dark. */
+/** Calls `callback` when the colour scheme changes between light and dark. */
 export function onPaletteChange(callback: () => void): void {
   changed.push(callback);
 }

@@ -1,5 +1,5 @@
 // The robot in 3D on the stage, and its panel: the parts, the guide step by step, and all files to print and to cut.
-// Nothing of it is loaded before 3D is shown or the panel is opened.
+// Its code is loaded only when 3D is shown or the panel is opened.
 import type { Space } from '../parts/space';
 import type { Made, Meeting, Model, Progress, Solids } from '../parts/workshop';
 import type { Frame, Place } from '../robot';
@@ -23,20 +23,20 @@ export class PartsView {
   private readonly canvas = element<HTMLCanvasElement>('space');
   private readonly apart = element<HTMLInputElement>('apart');
   private readonly list = element<HTMLSelectElement>('part');
-  /** The buttons that make files: all of them, or only those that changed lengths change. */
+  /** The buttons that make files: all files, or only files that changed lengths change. */
   private readonly buttons = { all: element<HTMLButtonElement>('parts-save'), changed: element<HTMLButtonElement>('parts-changed') };
   private space: Space | null = null;
   private solids: Solids | null = null;
   private model: Model | null = null;
   /** The robot.toml that is shown or being loaded. */
   private toml = '';
-  /** The robot.toml whose files were made last. */
+  /** The robot.toml to which the shown list of files belongs. */
   private made = '';
   private step: number | null = null;
   private picked: number | null = null;
-  /** The parts that meet, which are red. */
+  /** The two parts that come too close, shown in red; null if all fit. */
   private meeting: Meeting | null = null;
-  /** The request of the last pose. */
+  /** Angles and lags of the pose that was requested last, as a text; empty if it must be requested again. */
   private requestedPose = '';
   private stop: (() => void) | null = null;
 
@@ -68,7 +68,7 @@ export class PartsView {
     this.showRobot();
   }
 
-  /** Takes the session's robot, if it is shown in 3D. */
+  /** Shows the session's robot, if the stage is in 3D. */
   showRobot(): void {
     const { toml, original } = this.session();
     this.buttons.changed.hidden = toml === original;
@@ -134,7 +134,7 @@ export class PartsView {
     this.toStep(this.step === null ? (by > 0 ? 1 : last) : Math.max(1, Math.min(last, this.step + by)));
   }
 
-  /** Shows a step's new parts apart, as the guide's picture does; without a step, all parts together. */
+  /** Shows a step's new parts exploded, as the guide's picture does; for null, all parts assembled. */
   private toStep(step: number | null): void {
     if (!this.model) return;
     if ((step === null) !== (this.step === null)) this.apart.value = step === null ? '0' : '100';
@@ -168,7 +168,7 @@ export class PartsView {
     this.show();
   }
 
-  /** Colours two parts that meet, at the pose where they do; null if none do. */
+  /** Shows two parts that come too close in red, at the pose where they do; null if all fit. */
   meet(meeting: Meeting | null): void {
     if (meeting === this.meeting) return;
     this.meeting = meeting;
@@ -189,7 +189,7 @@ export class PartsView {
     const { space, solids } = this;
     if (!space || !solids || !space.mayDraw() || !this.is3d) return;
     const neutral = this.session().description.servos.map((servo) => servo.neutral);
-    // The robot stands still while a step of the guide is shown, or where two parts meet.
+    // The robot stands still while a step of the guide, or a pose in which two parts come too close, is shown.
     const moving = this.step === null && !this.meeting && frame?.scene != null;
     const [angles, lags] = moving ? [frame.scene?.angles ?? neutral, frame.lag] : [this.meeting?.pose ?? neutral, [0, 0, 0, 0]];
     const asked = [...angles, ...lags].map((angle) => angle.toFixed(2)).join(' ');
@@ -198,7 +198,7 @@ export class PartsView {
       void solids.pose(angles, lags).then((places) => {
         if (solids !== this.solids) return;
         if (places) space.pose(places);
-        // Another pose was in progress, so this one is requested again.
+        // Another pose was being computed, so this one is requested again.
         else if (this.requestedPose === asked) this.requestedPose = '';
       });
     }
@@ -223,7 +223,7 @@ export class PartsView {
     try {
       const workshop = await import('../parts/workshop');
       const { answer, stop } = workshop.make(toml, which === 'all' ? null : original, ({ doing, done, all }: Progress) => {
-        // Reports that were under way arrive after the end of the worker.
+        // Reports may still arrive after the worker was terminated.
         if (stopped) return;
         bar.max = all;
         bar.value = done;

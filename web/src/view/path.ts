@@ -1,4 +1,4 @@
-// The panel in which a gesture is drawn: the point of head or tail goes round a closed line.
+// The panel in which a gesture is drawn: the end point of head or tail follows a closed line.
 import type { DrawnGait, End, ReachArea } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
@@ -10,16 +10,19 @@ import type { Writer } from './writer';
 const SVG = 'http://www.w3.org/2000/svg';
 /** Least distance of two recorded points, mm. */
 const LEAST_DISTANCE = 0.3;
-/** Least number of points of a line; with fewer it is a tap. */
+/** Least number of points of a line; fewer points are a tap. */
 const LEAST_POINTS = 8;
-/** Points of a shape. */
+/** Number of points of a predefined line. */
 const POINTS = 96;
 /** Margin around the picture, mm. */
 const MARGIN = 4;
 
 type Point = [number, number];
 
-/** Predefined lines: points by the share of a round, in tenths of the distance from the base to the neutral point. */
+/**
+ * Predefined lines: points relative to the neutral point, by an angle of 0 to 2π, in tenths of its distance from the
+ * base.
+ */
 const SHAPES: Record<string, (turn: number) => Point> = {
   circle: (turn) => [Math.sin(turn), Math.cos(turn) - 1],
   eight: (turn) => [1.4 * Math.sin(turn), 0.6 * Math.sin(2 * turn)],
@@ -74,7 +77,7 @@ export class PathView {
     this.recordLines();
   }
 
-  /** Shows the session's robot, if the panel is open; a drawn line stays. */
+  /** Shows the plane of the session's robot, if the panel is open; a drawn line stays. */
   showRobot(): void {
     if (!isShown(this.panel)) return;
     const { toml } = this.session();
@@ -83,7 +86,7 @@ export class PathView {
     this.begin(this.drawn.points.length > 0);
   }
 
-  /** Shows the plane of the chosen end, with the chosen shape unless a drawn line is kept. */
+  /** Shows the plane of head or tail, as chosen, with the drawn line if `isKept`, else with the chosen shape. */
   private begin(isKept = false): void {
     this.room = this.session().robot.reachArea(this.drawn.end === 'head' ? 0 : 1);
     if (!this.room) return;
@@ -123,7 +126,7 @@ export class PathView {
     return points.length === 0 ? '' : `M ${points.map((point) => this.at(point).map((value) => value.toFixed(2)).join(' ')).join(' L ')} ${end}`;
   }
 
-  /** The background: the reachable area, the base, the neutral point. */
+  /** Draws the background: the reachable area, the base and the neutral point. */
   private drawBackground({ from, step, columns, allowed, neutral, shafts }: ReachArea): void {
     const rows = allowed.length / columns;
     const corner = (column: number, row: number): Point => [from[0] + (column - 0.5) * step, from[1] + (row - 0.5) * step];
@@ -161,7 +164,7 @@ export class PathView {
     this.rounded.setAttribute('d', this.path((drawn.points.length > 0 && this.session().robot.path(drawn)) || []));
   }
 
-  /** Records the lines that a finger or a mouse draws. */
+  /** Records lines that the user draws with a finger or a mouse. */
   private recordLines(): void {
     let points: Point[] | null = null;
     const pointOf = ({ clientX, clientY }: PointerEvent): Point | null => {

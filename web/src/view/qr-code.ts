@@ -1,4 +1,4 @@
-// A text as a QR code, for a phone's camera.
+// Draws a text as a QR code, for a phone's camera.
 import { encode } from 'uqr';
 
 /** Empty border, modules (ISO/IEC 18004, 9.1). */

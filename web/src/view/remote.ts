@@ -1,8 +1,8 @@
 // The phone as a remote control: the whole screen in landscape, with the stick under one thumb and `stop` under the other. The
-// screen stays on, since a dark screen would stop the robot.
+// screen is kept on, since the page stops the robot when the screen goes dark.
 import { element } from './canvas';
 
-/** A short buzz, ms. */
+/** Duration of a buzz, ms. */
 const BUZZ = 200;
 
 export class Remote {
@@ -13,7 +13,7 @@ export class Remote {
     this.button.addEventListener('click', () => void (this.isOn ? this.leave() : this.enter()));
     // The system's own gesture for leaving full screen also ends the remote.
     document.addEventListener('fullscreenchange', () => !document.fullscreenElement && this.show(false));
-    // The lock is lost while the page is hidden.
+    // The wake lock is lost when the page is hidden.
     document.addEventListener('visibilitychange', () => !document.hidden && this.isOn && void this.keepLight());
   }
 

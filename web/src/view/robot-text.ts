@@ -8,7 +8,7 @@ import { element } from './canvas';
 import { reveal } from './rooms';
 import { NO_BOARD, type Writer } from './writer';
 
-/** Number of robots that undo can restore. */
+/** Largest number of robots that undo can restore. */
 const STEPS = 50;
 
 export class RobotText {
@@ -20,7 +20,7 @@ export class RobotText {
   /** The robots that were undone, the latest at the end. */
   private undone: string[] = [];
   private shown = '';
-  /** The mistake of the text; null while it is the session's robot. */
+  /** The refusal of the shown text; null if the session's robot was loaded from it. */
   refused: Refused | null = null;
 
   /** `onText` is called when the text or its refusal has changed. */
@@ -72,7 +72,7 @@ export class RobotText {
     this.showRefusal(null);
   }
 
-  /** The text as it is shown: the session's robot, or one that is being written or has a mistake. */
+  /** The shown text: the session's robot, or a text that is being edited or has a mistake. */
   get draft(): string {
     return this.box.value;
   }
@@ -112,7 +112,10 @@ export class RobotText {
     return false;
   }
 
-  /** Loads a text, and shows its mistake at its place. */
+  /**
+   * Loads a text as the robot; if it is refused, opens the panel and selects the line of the mistake. Returns true if
+   * accepted.
+   */
   private async loadAndShow(toml: string): Promise<boolean> {
     if (await this.loadText(toml)) return true;
     reveal(this.box);
@@ -130,7 +133,7 @@ export class RobotText {
     else await this.writer.write('robot', { message, progress: element<HTMLProgressElement>('robot-progress') });
   }
 
-  /** Restores the robot before the last change; texts with a mistake do not count. */
+  /** Undoes the last change: restores the previous robot, or the current one if the shown text is refused. */
   async undoLast(): Promise<void> {
     if (this.refused) return this.showRobot();
     const { before, undone, shown } = this;
@@ -145,7 +148,7 @@ export class RobotText {
     if (next !== undefined) await this.restore(next, [...before, shown], undone.slice(0, -1));
   }
 
-  /** Makes an earlier robot the session's, with the steps before it and the undone ones. */
+  /** Loads an earlier robot into the session, with the lists of robots for undo and redo that belong to it. */
   private async restore(toml: string, before: string[], undone: string[]): Promise<void> {
     const now = { before: this.before, undone: this.undone, shown: this.shown };
     // A restored robot is not recorded as a step.

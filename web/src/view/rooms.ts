@@ -1,7 +1,8 @@
-// The rooms beside the stage. One is open; the part `room` of the address names it, so links and the browser's Back lead to it.
+// The rooms beside the stage, of which one is open. The part `room` of the address names it, so that links and the
+// browser's Back open it.
 import { partsOf } from '../address';
 
-/** The document's event when another room is open. */
+/** The name of the document's event after another room was opened. */
 export const OPENED = 'room';
 
 const FIRST = 'start';

@@ -1,4 +1,4 @@
-// The panel of routines: a view of their steps in the text of robot.toml, and the recorder of a drive.
+// The panel of routines: their steps, as in the text of robot.toml, and the recorder of a drive.
 import { LatestQuestion } from '../latest';
 import { type OnFloor, type Place, type Refused, Robot, type RoundPath, type Routine } from '../robot';
 import { robotHelper } from '../robot-helper';
@@ -10,15 +10,15 @@ import { isShown } from './rooms';
 import type { RobotText } from './robot-text';
 import { NO_BOARD, type Writer } from './writer';
 
-/** A step to begin with. */
+/** The first step of a new routine. */
 const FIRST = 'stand 1 s';
-/** Least width and height of the path's picture, and the room around the path, mm. */
+/** Least width and height of the path's picture without its margin, and the margin around the path, mm. */
 const LEAST = 160;
 const RIM = 20;
 
 const round = (value: number) => (Math.round(value) + 0).toFixed(0);
 
-/** The list with the item of one place at another. */
+/** Returns the list with the item at the index `from` moved to the index `to`. */
 function moved<T>(list: T[], from: number, to: number): T[] {
   const rest = list.toSpliced(from, 1);
   return rest.toSpliced(to, 0, list[from] as T);
@@ -33,13 +33,13 @@ export class RoutinesView {
   private readonly path = element<HTMLElement>('routine-path') as unknown as SVGSVGElement;
   private routines: Routine[] = [];
   private recorder: Recorder | null = null;
-  /** The recorded steps until they have a name. */
+  /** The recorded steps until they are stored under a name. */
   private recorded: string[] = [];
-  /** The step that is dragged, and its place if it is let go now. */
+  /** The index of the step that is dragged, and its index if it is dropped now; null without a drag. */
   private dragged: { from: number; to: number } | null = null;
   private paths: LatestQuestion<OnFloor & { routine: string }, RoundPath | null> | null = null;
 
-  /** Takes functions that return the session and the pace in percent, and that send a line. */
+  /** `pace` returns the pace, percent, and `ask` sends a line. */
   constructor(
     private readonly module: WebAssembly.Module,
     private readonly session: () => Session,
@@ -94,7 +94,7 @@ export class RoutinesView {
     this.predict();
   }
 
-  /** Predicts the path of the steps as they are shown. */
+  /** Predicts the path of the chosen routine with its steps as they are shown. */
   predict(): void {
     if (!isShown(this.panel)) return;
     const { shown } = this;
@@ -137,7 +137,7 @@ export class RoutinesView {
     if (this.recorder) this.say(`Recording: ${this.recorder.steps(this.session().clock).join(', ') || 'drive now'}`);
   }
 
-  /** Offers recorded steps to be kept by a name. */
+  /** Offers to store recorded steps under a name; without steps, hides the offer. */
   private offer(steps: string[]): void {
     this.recorded = steps;
     element('routine-recorded').hidden = steps.length === 0;
@@ -154,7 +154,7 @@ export class RoutinesView {
     const { draft } = this.text;
     if (Robot.routines(draft).some((routine) => routine.name === name)) return this.say(`${name} is there already: give it another name.`);
     const { text, refusal } = Robot.putSteps(draft, name, this.recorded);
-    // A mistake in a step is shown at its block, and then the routine is there.
+    // With a mistake in a step the routine is stored anyway: its block shows the mistake.
     if (refusal && refusal.key !== `routine.${name}.steps`) return this.say(refusal.refused);
     this.offer([]);
     await this.text.loadText(text);
@@ -222,7 +222,7 @@ export class RoutinesView {
     element('routine-none').hidden = shown !== null;
   }
 
-  /** Makes the block of the step at a place. */
+  /** Makes the block of the step at an index. */
   private block(at: number): HTMLLIElement {
     const grip = make('span', { className: 'grip', ariaHidden: 'true' }, '⠿');
     this.drag(grip, at);
@@ -232,7 +232,7 @@ export class RoutinesView {
     const button = (text: string, name: string, act: () => Promise<void>, next: () => number) => {
       const made = make('button', { type: 'button', ariaLabel: `${name} ${at + 1}` }, text);
       block.append(made);
-      // The step keeps the focus at its new place.
+      // The focus follows the step to its new index.
       made.addEventListener('click', () => void act().then(() => this.button(next(), name)?.focus()));
     };
     button('↑', 'Move up step', () => this.move(at, at - 1), () => Math.max(0, at - 1));
@@ -246,7 +246,7 @@ export class RoutinesView {
     return this.list.children[at]?.querySelector(`[aria-label^="${name}"]`) ?? null;
   }
 
-  /** Moves the step at a place where a pointer drags its grip; the path follows. */
+  /** Lets a pointer drag a step by its grip to another index; the predicted path follows. */
   private drag(grip: HTMLElement, at: number): void {
     const place = (y: number) => [...this.list.children].findLastIndex((block) => block.getBoundingClientRect().top <= y);
     const to = (to: number) => {
@@ -296,7 +296,7 @@ export class RoutinesView {
   }
 }
 
-/** The place of the step that a refusal names; null if it names none. */
+/** Returns the index of the step that a refusal names; null if it names none. */
 function mistaken({ refused }: Refused): number | null {
   const number = /: step (\d+), /.exec(refused)?.[1];
   return number === undefined ? null : Number(number) - 1;

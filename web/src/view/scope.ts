@@ -28,7 +28,7 @@ export class ScopeView {
   private pulses: Pulse[] = [];
   private readonly note = element('scope-note');
   private widths = [0, 0, 0, 0];
-  /** True if pulses are known: a board on USB sends only its pose. */
+  /** True if pulses are known, on the simulated board: a real board sends only its pose. */
   private hasPulses = true;
 
   /** Shows another robot. */
@@ -55,7 +55,7 @@ export class ScopeView {
     this.widths = [0, 0, 0, 0];
   }
 
-  /** Adds a pulse of the pin with this Arduino number; `rise` and `width` are in cycles. */
+  /** Adds a pulse of a pin, by its Arduino number; `rise` and `width` are in cycles. */
   pulse(pin: number, rise: number, width: number): void {
     const servo = this.pins.indexOf(pin);
     if (servo < 0) return;

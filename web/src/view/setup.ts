@@ -1,4 +1,5 @@
-// The dialog of the first connection: the current step and its view. Every step can be left and entered again.
+// The dialog of the first connection: its steps, the current step and its view. Every step can be left and entered
+// again.
 import type { Link } from '../link/link';
 import { parseCalibration } from '../robot';
 import type { Session } from '../session';
@@ -25,7 +26,7 @@ const STEPS: readonly Step[] = [board, firmware, horns, new Signs(), trims, new 
 const LOST = 'The board is not connected any more. What was not saved is lost. Connect it again and go on here.';
 const NO_ROBOT = 'No robot with this firmware answers: connect the board and write the firmware first.';
 
-/** The dialog. Steps call its methods detached, so these are bound. */
+/** The dialog. Steps call its methods as plain functions, so these methods are arrow functions. */
 export class Setup implements Tools {
   guide: Guide | null = null;
   servo = 0;
@@ -39,16 +40,19 @@ export class Setup implements Tools {
   private readonly picture = element('setup-drawing');
   private readonly message = element('setup-said');
   private readonly progress = element<HTMLProgressElement>('setup-progress');
-  /** Number of actions so far: the result of an outdated one is not shown. */
+  /** Number of actions that were begun or dropped so far: the result of an outdated action is not shown. */
   private work = 0;
   private isBusy = false;
-  /** True while an action runs that no button started; a button pressed meanwhile waits for it. */
+  /** True while an action runs that the dialog started by itself; the action of a button waits until it ends. */
   private isOwn = false;
   private next: (() => Promise<string>) | null = null;
   private under: Promise<void> = Promise.resolve();
   private lastLink: Link | null = null;
   private wasReal = false;
-  /** True from the loss of a board until it returns: an action that began on it must not continue on another one. */
+  /**
+   * True from the loss of a board until the next connection: an action that began on it must not continue on another
+   * board.
+   */
   private isLost = false;
   /** True if the board said that it has never saved a calibration. */
   private isNew = false;
@@ -79,7 +83,7 @@ export class Setup implements Tools {
     return this.sessionOf();
   }
 
-  /** Opens the dialog at the last step, or at the first. */
+  /** Opens the dialog at the step that was left, at first at the first step. */
   private begin(): void {
     this.reveal();
     this.enter(this.step);
@@ -98,7 +102,7 @@ export class Setup implements Tools {
     element('setup-left').hidden = true;
   }
 
-  /** Opens the step that a newly connected board needs first. */
+  /** Opens the step that a newly connected board needs first, if it needs one. */
   openNeededStep(): void {
     const { banner, hasThisRobot, link } = this.session;
     // A radio cannot write firmware, and the owner of a module has had a first walk.
@@ -118,7 +122,7 @@ export class Setup implements Tools {
     if (line.startsWith(NOTHING_SAVED)) this.isNew = true;
   }
 
-  /** Ends the current action: another board is connected. */
+  /** Takes another link, which ends the current action. */
   link(): void {
     const { link, isReal } = this.session;
     if (link === this.lastLink) return this.update();
@@ -132,7 +136,7 @@ export class Setup implements Tools {
     this.update();
   }
 
-  /** Updates the view: board or robot may have changed. */
+  /** Updates the view after a possible change of board or robot. */
   update(): void {
     if (this.guide && !this.guide.isCurrent) {
       const { isChanged } = this.guide;
@@ -142,7 +146,10 @@ export class Setup implements Tools {
     if (!this.box.hidden && !this.isBusy) this.show();
   }
 
-  /** Ends the current action. Proven steps stay proven, unless the robot has lost them. */
+  /**
+   * Drops the current action. Finished steps stay finished, unless the robot has lost its unsaved settings
+   * (`isLost`).
+   */
   private drop(isLost = true): void {
     this.work += 1;
     this.hold(false);
@@ -152,7 +159,7 @@ export class Setup implements Tools {
     for (const step of STEPS) step.forget?.();
   }
 
-  /** Closes the dialog and restores unsaved settings, after the current action. */
+  /** Closes the dialog after the current action; if settings are unsaved, restores the old calibration. */
   private async leave(): Promise<void> {
     if (this.guide?.isCurrent) await this.under;
     let message = '';
@@ -209,7 +216,7 @@ export class Setup implements Tools {
     this.act(async () => work(await this.asked()));
   };
 
-  /** The guide of the connected robot. */
+  /** Returns the guide of the connected robot; reads the robot's calibration first if needed. */
   private async asked(): Promise<Guide> {
     if (this.isLost) throw new Error(LOST);
     if (!this.session.answers) throw new Error(NO_ROBOT);
@@ -269,7 +276,7 @@ export class Setup implements Tools {
     this.show();
     this.title.focus({ preventScroll: true });
     if (!step.needsRobot || !this.session.answers || this.isLost) return;
-    // Servos that a step has turned go back before the next step.
+    // Servos that a step has turned return to neutral before the next step.
     const { guide } = this;
     if (!guide) this.act(async () => this.asked().then(() => ''), true);
     else if (this.session.gait !== GAITS.stand) this.act(async () => guide.stand().then(() => ''), true);

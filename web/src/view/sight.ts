@@ -7,7 +7,7 @@ import { palette } from './palette';
 /** Length of the arrow relative to the deck's tag. */
 const ARROW = 1.6;
 
-/** Draws over a picture that fills its element with its whole width and height. */
+/** Draws over a picture that is centred in its element and scaled to fit, as `object-fit: contain` does. */
 export function drawSight(canvas: HTMLCanvasElement, seen: Seen): void {
   const view = surface(canvas);
   if (!view) return;

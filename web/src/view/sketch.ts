@@ -15,7 +15,7 @@ type Question = Parameters<RobotFunctions['lengths']>[0];
 type Answer = ReturnType<RobotFunctions['lengths']>;
 
 const SVG = 'http://www.w3.org/2000/svg';
-/** Largest movement of a press that is no drag, CSS px. */
+/** Movement of the pointer beyond which a press is a drag, CSS pixels. */
 const STILL = 3;
 /** Margin around the robot, mm. */
 const RIM = 14;
@@ -60,7 +60,7 @@ export class Sketch {
     return new LatestQuestion((question) => helper.ask((robot) => robot.lengths(question)), (answer) => this.answered(answer));
   }
 
-  /** Asks for the robot as it is, and for the range of the slider's length. */
+  /** Requests a drawing of the robot as it is, and the range of the slider's length. */
   private askRobot(): void {
     this.sketches?.ask({ toml: this.toml, edits: [], isLast: false, keys: this.slider.keys });
   }
@@ -103,7 +103,7 @@ export class Sketch {
     else this.goBack();
   }
 
-  /** Shows the session's robot again. */
+  /** Shows the session's unchanged robot again. */
   private goBack(): void {
     const { lengths } = this.session().description;
     this.slider.showRobot(lengths);
@@ -116,7 +116,9 @@ export class Sketch {
     if (this.slider.isChosen) this.fit.findRange(this.slider.keys, range, (found, message) => this.slider.mark(found, message));
   }
 
-  /** Draws the robot; if `isWhole`, also fits the view to it. During a drag the view stays, and so do the joints' elements. */
+  /**
+   * Draws the robot; if `isWhole`, also fits the view to it. During a drag the view and the joints' elements stay.
+   */
   private draw(scene: Scene, isWhole: boolean): void {
     const at = ([x, y]: Point): Point => [x, -y];
     const lengths = this.lengths();
@@ -140,7 +142,7 @@ export class Sketch {
       this.picture.setAttribute('viewBox', `${left} ${top} ${Math.max(...xs) + RIM - left} ${Math.max(...ys) + RIM - top}`);
     }
     if (this.dragged) {
-      // The joints are drawn at their real places, so the dragged one may not reach the pointer.
+      // Joints are drawn where their lengths put them, so the dragged joint may be away from the pointer.
       joints(scene, () => 0).forEach(({ at: spot }, n) => this.place(this.drawnJoints.children[n], at(spot)));
       return;
     }

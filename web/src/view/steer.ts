@@ -1,10 +1,10 @@
-// Drives by hand: keys, a stick on the screen or a gamepad give a direction, and the gait for it walks as long as
-// they are held.
+// Steers by hand: keys, a stick on the screen or a gamepad give a direction, and the robot walks the gait for this
+// direction as long as they are held.
 import type { Displacement } from '../robot';
 import { WORDS } from '../words';
 import { element } from './canvas';
 
-/** A direction: forward and left, each from -1 to 1. */
+/** A direction: forward and left components, each from -1 to 1. */
 export interface Direction {
   ahead: number;
   left: number;
@@ -16,14 +16,16 @@ export interface Choice {
   displacement: Displacement;
 }
 
-/** Dead zone of a stick. */
+/** Dead zone of a stick, as a share of its full deflection. */
 const DEAD_ZONE = 0.35;
-/** Deflection of a stick below which the robot goes at half its pace, and above which it returns to the full pace. */
+/**
+ * Deflections of a stick below which the robot walks at half its pace, and above which it returns to the full pace.
+ */
 const HALF_PACE = 0.65;
 const FULL_PACE = 0.75;
 /** Lowest pace of the robot, percent. */
 const MIN_PACE = 10;
-/** The buttons of a gamepad's cross, in the browser's order; any other button stops the robot. */
+/** The direction of each button of a gamepad's cross, by the browser's number; any other button stops the robot. */
 const CROSS: Record<number, Direction> = {
   12: { ahead: 1, left: 0 },
   13: { ahead: -1, left: 0 },
@@ -50,7 +52,7 @@ const KEYS: Record<string, Direction> = {
 };
 
 /**
- * Returns the gait for a direction, of those with a known prediction; null if there is none. Displacement and turn
+ * Returns the best gait for a direction among gaits with a known prediction; null if none fits. Distances and turns
  * are scaled by the robot's largest, and of gaits with the same direction the farthest is taken.
  */
 export function gaitFor({ ahead, left }: Direction, choices: Choice[]): string | null {
@@ -58,7 +60,7 @@ export function gaitFor({ ahead, left }: Direction, choices: Choice[]): string |
   if (size < DEAD_ZONE) return null;
   const largest = (of: (displacement: Displacement) => number | null) => Math.max(...choices.map(({ displacement }) => Math.abs(of(displacement) ?? 0)), 0);
   const [farthest, widest] = [largest(({ forward }) => forward), largest(({ turn }) => turn)];
-  // A drift counts as none, also where no gait that turns is predicted yet.
+  // A drift counts as zero, even if no gait that turns is predicted yet and the drift would be the largest turn.
   const share = (value: number | null, smallest: number, largest: number) => (value !== null && Math.abs(value) >= smallest ? value / largest : 0);
   let best: { command: string; value: number } | null = null;
   for (const { command, displacement } of choices) {
@@ -68,7 +70,7 @@ export function gaitFor({ ahead, left }: Direction, choices: Choice[]): string |
     const long = Math.hypot(x, y);
     const cosine = (x * ahead + y * left) / (long * size);
     if (cosine < MIN_COSINE) continue;
-    // Direction counts more than distance: an arc does not go straight.
+    // Direction counts more than distance, so that no arc is taken for straight ahead.
     const value = cosine ** 4 * Math.min(1, long) ** 0.25;
     if (!best || value > best.value) best = { command, value };
   }
@@ -81,7 +83,9 @@ export class Steer {
   private readonly knob = element('knob');
   private atStick: Direction = { ahead: 0, left: 0 };
   private atPad: Direction = { ahead: 0, left: 0 };
-  /** False from a release until the gamepads' sticks are let go, so that a stick still held no longer drives. */
+  /**
+   * False from a release until the gamepads' sticks are let go, so that a stick that is still held does not drive.
+   */
   private isPadActive = true;
   private isPressed = false;
   /** The element that the pointer pressed last, until Tab moves the focus. */
@@ -93,7 +97,10 @@ export class Steer {
   /** The pace to restore, percent, while a stick asks for half of it. */
   private fullPace: number | null = null;
 
-  /** Takes functions that list the robot's gaits, that send a line, that say when nobody may drive, and the robot's pace, percent. */
+  /**
+   * `choices` lists the predicted gaits, `send` sends a line, `isBarred` forbids to drive, `pace` returns the pace,
+   * percent.
+   */
   constructor(
     private readonly choices: () => Choice[],
     private readonly send: (line: string) => void,
@@ -146,7 +153,7 @@ export class Steer {
     this.follow();
   }
 
-  /** Releases everything that is held; if `stops`, also stops a robot that walks by it. */
+  /** Releases everything that is held; if `stops`, also stops a robot that walks because of it. */
   release(stops = true): void {
     this.held.clear();
     this.atPad = { ahead: 0, left: 0 };
@@ -163,7 +170,8 @@ export class Steer {
       return;
     }
     const { target } = event;
-    // The keys belong to a text field and to the setup; also to a slider, a list or a view that was reached with Tab.
+    // Text inputs and the setup keep these keys for themselves; so does a slider, a list or a view that was reached
+    // with Tab.
     const textFields = 'textarea, [type="text"], [type="number"], #setup';
     const isTaken = target instanceof Element && target.closest(target === this.touched ? textFields : `${textFields}, input, select, canvas, [role="log"]`) !== null;
     if (isTaken || event.ctrlKey || event.altKey || event.metaKey) return;

@@ -10,11 +10,11 @@ import { NO_BOARD, type Writer } from './writer';
 
 /** An editor of gaits, as its trial sees it. */
 export interface GaitEditor {
-  /** The prefix of its elements' ids. */
+  /** The prefix of the editor's element ids. */
   prefix: 'gait' | 'path';
   /** The edited gait; null if there is none. */
   made(): EditedGait | null;
-  /** Sets a value that would be accepted. */
+  /** Sets one of the valid values that a refusal offers. */
   change(what: Alternative, value: number): void;
 }
 

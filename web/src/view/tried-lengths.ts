@@ -1,16 +1,16 @@
-// Lengths that were tried, in words: their names, the reason of a refusal, and buttons for valid ones.
+// Lengths that were tried: their text, the reason of a refusal, and buttons for valid alternatives.
 import type { Edits, Length, Refused, TriedLengths } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
 import { button } from './make';
 
-/** A length and, where left and right are kept equal, its twin. */
+/** Returns the edit of a length and, if `isSymmetric`, the same edit of its twin. */
 export function withTwin(key: string, value: number, lengths: Length[], isSymmetric: boolean): Edits {
   const twin = lengths.find((length) => length.key === key)?.twin ?? key;
   return [...new Set(isSymmetric ? [key, twin] : [key])].map((each) => [each, value]);
 }
 
-/** Lists lengths in words; a length that is equal on both sides once. */
+/** Lists lengths as a text, grouped by value, such as `l1 = l4 = 30 mm`. */
 export function words(edits: Edits, lengths: Length[]): string {
   const by = new Map<number, string[]>();
   for (const [key, value] of edits) by.set(value, [...(by.get(value) ?? []), key]);
@@ -29,7 +29,7 @@ export function refusalOf(named: string, edits: Edits, { refused, meaning, key }
   return `${named} is ${how}: ${why}.`;
 }
 
-/** Shows a button for each solution of a refusal; none for null. */
+/** Shows a button for each valid alternative to refused lengths; removes the buttons for null. */
 export function showOffers(tried: Pick<TriedLengths, 'nearest' | 'without'> | null, session: Session): void {
   const { nearest = null, without = null } = tried ?? {};
   const change = (text: string) => () => void session.change(text);

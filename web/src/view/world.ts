@@ -19,7 +19,7 @@ const FORMATS = {
 type SliderName = keyof typeof FORMATS;
 const SLIDERS = Object.keys(FORMATS) as SliderName[];
 
-/** The event that closes the contact of each input. */
+/** The label of each input: the event that closes its contact. */
 const CONTACTS: Record<string, string> = { button: 'button pressed', nose: 'wall at the nose' };
 
 export class World {
@@ -83,7 +83,7 @@ export class World {
     this.onChange();
   }
 
-  /** Shows the servo model and its supply: its own one, or as set. */
+  /** Shows the servo model and its supply voltage: as set by the user, else the model's own. */
   private showServos(): void {
     const { description, servos } = this.session();
     const [name = '', supply] = servos.split(' at ');
@@ -117,7 +117,7 @@ export class World {
     const springs = floor.kind !== 'rigid';
     const isElastic = springs || this.session().servos !== 'ideal';
     this.input('force').disabled = !springs;
-    // Friction cancels out if neither springs nor servos yield, and so does mass without a long foot.
+    // If neither springs nor servos yield, friction has no effect, nor has mass if no foot is too long.
     this.input('friction').disabled = !isElastic;
     this.input('mass').disabled = !isElastic && floor.twist === 0;
     this.input('leaf').disabled = floor.twist === 0;

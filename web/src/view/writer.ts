@@ -1,9 +1,9 @@
-// Writes firmware or robot to a board, and shows progress and result in every display.
+// Writes firmware or robot to a board, and shows progress and result in the caller's elements.
 import { FirmwareMismatch } from '../link/stk500';
 import type { Session } from '../session';
 import { messageOf } from '../trouble';
 
-/** The elements that show the progress. */
+/** The elements that show progress and result. */
 export interface Display {
   progress: HTMLProgressElement;
   message: HTMLElement;
@@ -20,13 +20,13 @@ const DOES = { comparing: 'comparing with the firmware on the board…', writing
 export class Writer {
   private isWriting = false;
 
-  /** `busy` is called when the boot loader takes the line, and when the line is free again. */
+  /** `busy` is called with true when the boot loader takes the link, and with false when the link is free again. */
   constructor(
     private readonly session: () => Session,
     private readonly busy: (busy: boolean) => void,
   ) {}
 
-  /** True while the boot loader uses the line. */
+  /** True while the boot loader uses the link. */
   get isBusy(): boolean {
     return this.isWriting;
   }
@@ -71,7 +71,7 @@ export class Writer {
   }
 }
 
-/** The consequence of an interrupted write. */
+/** Messages for the consequence of an interrupted write. */
 const TORN = {
   robot: '. Perhaps only a part of the robot is on the board, which then moves nothing: try again',
   all: '. Perhaps only a part of it is on the board, which then does nothing: try again',

@@ -31,7 +31,7 @@ pub struct TagEntry {
     pub corners: [[f64; 2]; 4],
 }
 
-/// A question for the movement of gaits in the film.
+/// A request to measure gaits in the film.
 #[derive(Debug, Clone, PartialEq, Deserialize, Tsify)]
 pub struct Asked {
     /// The robot.toml.
@@ -40,9 +40,10 @@ pub struct Asked {
     pub speed: u8,
     /// Height of the deck's tag above the floor, mm; `None` for that of the board.
     pub height: Option<f64>,
-    /// Length of the line that should be 100 mm long, mm.
+    /// Measured length of the sheet's line that should be 100 mm long, mm.
     pub ruler: f64,
-    /// The walks; if there are none, those between rests, each of the gait that it is clearly like.
+    /// The walks. If empty, the film is split at its rests, and each walk is assigned the gait that it clearly
+    /// resembles.
     pub walks: Vec<AskedWalk>,
 }
 
@@ -55,7 +56,7 @@ pub struct AskedWalk {
     pub during: Option<[f64; 2]>,
 }
 
-/// The movement of gaits.
+/// The measured displacements of gaits.
 #[derive(Debug, Clone, PartialEq, Serialize, Tsify)]
 pub struct Results {
     /// The gaits as `lizard measure --json` writes them; walks of the same gait count together.
@@ -69,12 +70,12 @@ pub struct Results {
 #[derive(Debug, Default)]
 pub struct Camera {
     film: Film,
-    /// The path in the film, until it has another picture or other measures.
+    /// The path in the film with its setup; `None` if it must be computed again, since the film has a new picture.
     watched: Option<(Setup, WatchedFilm)>,
 }
 
 impl Camera {
-    /// Finds the tags of a picture.
+    /// Finds the tags of a picture that is not added to the film.
     pub fn look(&mut self, picture: &Picture) -> Vec<TagEntry> {
         let tags = self.film.find_tags(picture).into_iter();
         tags.map(|Tag { id, corners }| TagEntry { id, corners })
@@ -84,7 +85,7 @@ impl Camera {
     /// Adds the next picture to the film, taken at this time, s, and finds its tags.
     ///
     /// # Errors
-    /// Fails if it does not belong to the film, or shows a tag twice.
+    /// Fails if the picture does not belong to the film, or shows a tag twice.
     pub fn add(&mut self, picture: &Picture, seconds: f64) -> Result<Vec<TagEntry>, Refused> {
         self.watched = None;
         let tags = self.film.add(seconds, picture).map_err(Refused::of)?;
@@ -100,8 +101,8 @@ impl Camera {
     /// Measures gaits in the film.
     ///
     /// # Errors
-    /// Fails if the film does not show what is needed, the robot has no such gait, or a walk for which no gait is given
-    /// is not clearly like one.
+    /// Fails if the robot.toml is invalid, the robot has no such gait, the film does not show what is needed, or a
+    /// walk without a given gait does not clearly resemble one.
     pub fn measure(&mut self, asked: &Asked) -> Result<Results, Refused> {
         let robot = Robot::parse(&asked.toml).map_err(Refused::of)?;
         let gait = |walk: &AskedWalk| {

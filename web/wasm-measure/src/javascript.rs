@@ -74,11 +74,11 @@ impl PageCamera {
         Self::default()
     }
 
-    /// Finds the tags of a picture that was taken at a time, s; one that is kept belongs to the film. A grey picture has a byte for
-    /// each pixel, a colourful one four.
+    /// Finds the tags of a picture that was taken at a time, s; if `is_kept`, adds the picture to the film. A grey
+    /// picture has one byte per pixel, a picture in colour has four.
     ///
     /// # Errors
-    /// Fails if the picture is not whole, does not belong to the film, or shows a tag twice.
+    /// Fails if the picture is incomplete; or if it is kept, and does not belong to the film or shows a tag twice.
     #[wasm_bindgen(unchecked_return_type = "TagEntry[]")]
     pub fn look(
         &mut self,
@@ -113,7 +113,7 @@ impl PageCamera {
         Ok(js(self.0.measure(&asked)?))
     }
 
-    /// The sheet of tags as PDF, for A4 or for paper of 11 x 8.5 inches.
+    /// Returns the sheet of tags as PDF, for paper of 11 x 8.5 inches if `is_letter`, else for A4.
     #[must_use]
     pub fn sheet(is_letter: bool) -> Vec<u8> {
         let paper = if is_letter { Paper::Letter } else { Paper::A4 };

@@ -35,9 +35,9 @@ impl From<Refused> for JsValue {
 #[derive(Clone, Debug)]
 #[wasm_bindgen(getter_with_clone)]
 pub struct PartFile {
-    /// Its path.
+    /// The file's path.
     pub path: String,
-    /// Its bytes.
+    /// The file's bytes.
     pub bytes: Vec<u8>,
 }
 
@@ -50,28 +50,29 @@ impl Parts {
     /// Makes the parts of a robot.toml.
     ///
     /// # Errors
-    /// Fails for a wrong robot.toml, or a robot of which no parts can be made.
+    /// Fails for an invalid robot.toml, or a robot whose parts cannot be made.
     #[wasm_bindgen(constructor)]
     pub fn new(toml: &str) -> Result<Self, Refused> {
         Ok(Self(Model::read(toml)?))
     }
 
-    /// The model without triangles.
+    /// Describes the model for the page, without triangles.
     #[must_use]
     #[wasm_bindgen(unchecked_return_type = "ModelEntry")]
     pub fn entry(&self) -> JsValue {
         js(self.0.entry())
     }
 
-    /// The triangles of the solids, in the order of `BodyEntry.solid`.
+    /// Makes the triangles of the solids, in the order of `BodyEntry.solid`.
     ///
     /// # Errors
-    /// Fails for a part whose layers make no body.
+    /// Fails for a part whose layers make no closed body.
     pub fn solids(&self) -> Result<Vec<Triangles>, Refused> {
         self.0.solids()
     }
 
-    /// x, y, cosine and sine of every mount, at angles and lags in deg; undefined where a loop does not close.
+    /// Returns x, y, cosine and sine of every mount, at angles and lags in deg; undefined if a loop does not close,
+    /// or if an array does not have four numbers.
     #[must_use]
     pub fn pose(
         &self,
@@ -84,27 +85,27 @@ impl Parts {
         Some(places.into_flattened())
     }
 
-    /// Proves that no two parts meet; returns the least distance, mm. Calls `progress` with the number of questions answered
-    /// and their total.
+    /// Proves that no two parts overlap or come too close; returns the least distance, mm, undefined if no pair was
+    /// checked. Calls `progress` with the number of finished checks and their total.
     ///
     /// # Errors
-    /// Returns the two parts that meet.
+    /// Returns the two parts that overlap or come too close.
     pub fn prove(
         &self,
         #[wasm_bindgen(unchecked_param_type = "(done: number, all: number) => void")]
         progress: &Function,
     ) -> Result<Option<f64>, Refused> {
         let proved = self.0.prove(|done, all| {
-            // A page that does not want to know it any more has ended the worker.
+            // An error of the callback is ignored: a page that is no longer interested terminates the worker.
             let _ = progress.call2(&JsValue::NULL, &done.into(), &all.into());
         })?;
         Ok(proved.least)
     }
 
-    /// Makes some of the files; `number` counts the calls that the model asks for.
+    /// Makes a group of the files; `number` is the group's index, below `ModelEntry.files`.
     ///
     /// # Errors
-    /// Fails for a part whose layers make no body, or a screw that cannot be reached.
+    /// Fails for a part whose layers make no closed body, or a screw that cannot be reached.
     pub fn files(&self, number: usize) -> Result<Vec<PartFile>, Refused> {
         let files = self.0.files(number)?.into_iter();
         Ok(files

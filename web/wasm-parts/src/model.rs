@@ -15,7 +15,7 @@ use tsify::Tsify;
 pub struct Refused {
     /// The reason, as a message.
     pub refused: String,
-    /// The parts that meet, if that is the reason.
+    /// The two parts that overlap or come too close; `None` if the reason is another one.
     #[tsify(type = "Meeting | null")]
     pub meeting: Option<Meeting>,
 }
@@ -41,32 +41,32 @@ impl From<Unfit> for Refused {
 /// A body of the robot.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct BodyEntry {
-    /// The unique name.
+    /// The body's unique name.
     pub name: String,
     /// The kind of body, in a word or two.
     pub kind: &'static str,
     /// The index of the mount that it moves with.
     pub mount: usize,
-    /// The servo that it belongs to, 0 to 3; `None` for chassis and sides.
+    /// The index of the servo that the body belongs to; `None` for chassis and sides.
     pub servo: Option<usize>,
-    /// The step of the guide that adds it, from 1; 0 for none.
+    /// The number of the guide's step that adds the body, from 1; 0 if no step adds it.
     pub step: usize,
     /// Lift in the guide's exploded picture, as a share.
     pub lift: f64,
     /// The index of the printed part; `None` for bought bodies.
     pub part: Option<usize>,
-    /// The solid's position in its mount's frame: the columns of a 4 x 4 matrix.
+    /// The solid's pose in the mount's frame: the columns of a homogeneous 4 x 4 matrix.
     pub place: [f64; 16],
-    /// The index of its solid.
+    /// The index of the body's solid in [`Model::solids`].
     pub solid: usize,
 }
 
 /// A printed part.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct PartEntry {
-    /// The name.
+    /// The part's name.
     pub name: String,
-    /// The name of its files, without folder and ending.
+    /// The name of the part's files, without folder and extension.
     pub file: String,
     /// The number of pieces needed.
     pub count: usize,
@@ -81,7 +81,7 @@ pub struct StepEntry {
     pub words: String,
 }
 
-/// The complete model except the triangles.
+/// The description of the complete model, except the triangles.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct ModelEntry {
     /// Every body of the robot.
@@ -94,7 +94,7 @@ pub struct ModelEntry {
     pub mounts: usize,
     /// Distance from the plate's top down to the soles of the feet, mm.
     pub floor: f64,
-    /// The number of calls of [`Model::files`] that make all files.
+    /// The number of groups of files, which [`Model::files`] makes one per call.
     pub files: usize,
 }
 
@@ -110,7 +110,7 @@ impl Model {
     /// Reads the model of a robot.toml.
     ///
     /// # Errors
-    /// Fails for a wrong robot.toml, or a robot of which no parts can be made.
+    /// Fails for an invalid robot.toml, or a robot whose parts cannot be made.
     pub fn read(toml: &str) -> Result<Self, Refused> {
         let robot = Robot::parse(toml).map_err(Refused::of)?;
         let assembly = Assembly::new(&robot);
@@ -129,7 +129,7 @@ impl Model {
         })
     }
 
-    /// The model for the page, without triangles.
+    /// Describes the model for the page, without triangles.
     #[must_use]
     pub fn entry(&self) -> ModelEntry {
         let mut soles: f64 = 0.0;
@@ -182,7 +182,7 @@ impl Model {
         &self.assembly
     }
 
-    /// The parts of the robot, without alternatives.
+    /// The parts that the robot is built of, without the alternatives to them.
     pub(crate) fn needed(&self) -> impl Iterator<Item = &Part> {
         self.parts.iter().filter(|part| part.instead_of.is_none())
     }
@@ -229,17 +229,17 @@ impl Model {
         Some(places.collect())
     }
 
-    /// The parts in the order in which `lizard parts` makes them.
+    /// All parts in the order in which `lizard parts` makes them: the coupon, if any, then also the alternatives.
     fn ordered(&self) -> impl Iterator<Item = Part> {
         let coupon = coupon(self.assembly.robot().parts());
         coupon.into_iter().chain(self.parts.iter().cloned())
     }
 
-    /// Some of the files that `lizard parts` writes: those of a part, and last the bill and the
-    /// guide; none after that.
+    /// Makes a group of the files that `lizard parts` writes: the files of one part, or in the last group the
+    /// bill and the guide. Empty for a larger `number`.
     ///
     /// # Errors
-    /// Fails for a part whose layers make no body, or a screw that cannot be reached.
+    /// Fails for a part whose layers make no closed body, or a screw that cannot be reached.
     pub fn files(&self, number: usize) -> Result<Vec<File>, Refused> {
         let robot = self.assembly.robot();
         let count = self.ordered().count();
@@ -257,10 +257,10 @@ impl Model {
         Ok(papers(&self.assembly, &bill, &pose)?)
     }
 
-    /// Proves that no two parts meet at any pose that the guard accepts.
+    /// Proves that no two parts overlap or come too close at any pose that the guard accepts.
     ///
     /// # Errors
-    /// Returns the two parts that meet.
+    /// Returns the worst two parts.
     pub fn prove(&self, progress: impl FnMut(usize, usize)) -> Result<Proved, Refused> {
         let proof = self.assembly.prove(progress);
         proof.judge().map_err(Unfit::from)?;
@@ -273,11 +273,11 @@ impl Model {
 /// The result of a successful proof.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Proved {
-    /// Smallest distance of two parts that are not made to touch, mm.
+    /// Least distance between two parts that are not designed to touch, mm; `None` if no such pair was checked.
     pub least: Option<f64>,
 }
 
-/// A place in a mount's frame as the columns of a matrix.
+/// Returns the homogeneous matrix, by columns, of a solid's pose in its mount's frame; the identity for `None`.
 fn matrix(motion: Option<PrintToBody>) -> [f64; 16] {
     let as_it_lies = PrintToBody {
         flipped: false,

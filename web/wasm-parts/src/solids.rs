@@ -1,4 +1,4 @@
-//! The triangles of all solids, as numbers that a graphics chip takes.
+//! The triangles of all solids, as the numbers that a graphics chip needs.
 
 use lizard_parts::{Body, Mesh, Prism, Solid};
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -11,16 +11,16 @@ use crate::model::{Model, Refused};
 pub struct Triangles {
     /// x, y and z of each corner, mm.
     pub corners: Vec<f32>,
-    /// The three corners of each triangle.
+    /// The indices of each triangle's three corners.
     pub triangles: Vec<u32>,
 }
 
 impl Model {
-    /// The triangles in the order of [`BodyEntry::solid`](crate::BodyEntry::solid): first those of each printed part, the same
-    /// as in its STL file, then those of each bought body.
+    /// Makes the triangles of each solid, in the order of [`BodyEntry::solid`](crate::BodyEntry::solid): first the
+    /// printed parts, as in their STL files, then the bought bodies.
     ///
     /// # Errors
-    /// Fails for a part whose layers make no body.
+    /// Fails for a part whose layers make no closed body.
     pub fn solids(&self) -> Result<Vec<Triangles>, Refused> {
         let printed = self
             .needed()

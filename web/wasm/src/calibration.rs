@@ -28,23 +28,23 @@ export interface Calibration {
 }
 ";
 
-/// Reads the lines of `cal`, skipping others; null if one is missing.
+/// Reads a calibration from the lines of `cal`, skipping other lines; null if one of its lines is missing.
 #[must_use]
 #[wasm_bindgen(js_name = readCalibration, unchecked_return_type = "Calibration | null")]
 pub fn read_calibration(lines: Vec<String>) -> JsValue {
     js(Calibration::of_lines(&lines))
 }
 
-/// Reads the text of a file of this name.
+/// Reads a calibration from the text of a file; `name` is the file's name in the error.
 ///
 /// # Errors
-/// Fails with the first mistake in it.
+/// Fails with the first mistake in the text.
 #[wasm_bindgen(js_name = parseCalibration, unchecked_return_type = "Calibration")]
 pub fn parse_calibration(text: &str, name: &str) -> Result<JsValue, JsError> {
     Ok(js(Calibration::parse(text, name)?))
 }
 
-/// The text of the file.
+/// Formats a calibration as the text of its file.
 #[wasm_bindgen(js_name = calibrationText)]
 pub fn calibration_text(
     #[wasm_bindgen(unchecked_param_type = "Calibration")] calibration: &JsValue,
@@ -52,7 +52,7 @@ pub fn calibration_text(
     Ok(rust::<Calibration>(calibration)?.text())
 }
 
-/// Returns true if a robot would print the same for both.
+/// Returns true if a robot would print the same lines for both calibrations.
 #[wasm_bindgen(js_name = isSameCalibration)]
 pub fn is_same_calibration(
     #[wasm_bindgen(unchecked_param_type = "Calibration")] a: &JsValue,
@@ -61,7 +61,7 @@ pub fn is_same_calibration(
     Ok(rust::<Calibration>(a)?.is_same(&rust(b)?))
 }
 
-/// The settings of a servo that turns the other way, with the same pulse at its neutral angle.
+/// Returns the settings of a servo that turns in the other direction, with the same pulse at its neutral angle.
 #[wasm_bindgen(js_name = reversedServo, unchecked_return_type = "ServoSettings")]
 pub fn reversed_servo(
     #[wasm_bindgen(unchecked_param_type = "ServoSettings")] servo: &JsValue,
@@ -69,7 +69,7 @@ pub fn reversed_servo(
     Ok(js(rust::<ServoSettings>(servo)?.reversed()))
 }
 
-/// The settings of a servo with another scale, us/deg, and the same pulse at its neutral angle.
+/// Returns the settings of a servo with another scale, us/deg, and the same pulse at its neutral angle.
 #[wasm_bindgen(js_name = scaledServo, unchecked_return_type = "ServoSettings")]
 pub fn scaled_servo(
     #[wasm_bindgen(unchecked_param_type = "ServoSettings")] servo: &JsValue,
@@ -78,7 +78,7 @@ pub fn scaled_servo(
     Ok(js(rust::<ServoSettings>(servo)?.with_scale(scale)))
 }
 
-/// The lines that give a robot a calibration, unsaved, in an order that it accepts.
+/// The lines that set a robot's calibration, without saving it, in an order that the robot accepts.
 #[wasm_bindgen]
 pub struct Transfer(lizard_robot::Transfer);
 
@@ -92,13 +92,15 @@ impl Transfer {
         Ok(Self(lizard_robot::Transfer::new(&rust(calibration)?)))
     }
 
-    /// The next line to send; undefined if all are sent, or those that are left are refused again.
+    /// Returns the next line to send; undefined if all lines are accepted, or if all that are left were refused
+    /// again.
     #[wasm_bindgen(js_name = nextLine)]
     pub fn next_line(&mut self) -> Option<String> {
         self.0.next_line()
     }
 
-    /// Notes that the robot has refused the last line; returns true if it is the first one in its round.
+    /// Notes that the robot has refused the last line; returns true for the first refused line of a round through the
+    /// lines that are left.
     pub fn refuse(&mut self) -> bool {
         self.0.refuse()
     }

@@ -1,7 +1,7 @@
 //! The firmware's core running in the page without a chip, for a second robot.
 //!
-//! Simulating another chip would double the time. The core is plain integer Rust, so its answers
-//! and pulses are those of a UNO to the bit; only the cycles of the chip are missing.
+//! Simulating another chip would double the CPU time. The core is plain integer Rust, so its answers
+//! and pulses equal those of a UNO to the bit; only the timing by the chip's cycles is missing.
 
 use lizard_core::control::supply::Reading;
 use lizard_core::memory::restart::Restart;
@@ -10,14 +10,14 @@ use lizard_robot::{CoreRobot, healthy_rail_mv};
 use serde::Serialize;
 use tsify::Tsify;
 
-/// Steps of the analogue converter, and the reference on the chip in V.
+/// Number of steps of the analogue converter, and the voltage of the chip's internal reference, V.
 const FULL_SCALE: f64 = 1024.0;
 const REFERENCE: f64 = 1.1;
 
 /// The output of a frame.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Tsify)]
 pub struct CoreFrame {
-    /// Pulse widths, CPU cycles of 62.5 ns, A1 to A4; 0 for none.
+    /// Pulse widths, CPU cycles of 62.5 ns, A1 to A4; 0 for no pulse.
     pub widths: [u16; 4],
     /// Text that was written to the serial line.
     pub text: String,
@@ -26,12 +26,12 @@ pub struct CoreFrame {
 /// The core of a robot, running.
 pub struct CoreRun {
     running: Running,
-    /// Voltage of a healthy servos' rail at its pin, mV.
+    /// Voltage at the measuring pin while the servos' rail is healthy, mV; 0 if the rail is not measured.
     rail_mv: f64,
 }
 
 impl CoreRun {
-    /// Starts the core at power-on, with this EEPROM.
+    /// Starts a robot's core at power-on, with the content of its EEPROM.
     #[must_use]
     pub fn begin(robot: CoreRobot, memory: Eeprom) -> Self {
         Self {
@@ -46,14 +46,14 @@ impl CoreRun {
         self.running.board.memory
     }
 
-    /// Runs one frame of 20 ms, after these bytes of the serial line, at a supply in V.
+    /// Runs one frame of 20 ms at a supply in V; the core first receives the bytes from the serial line.
     pub fn frame(&mut self, bytes: &[u8], volts: f64) -> CoreFrame {
         let parts = |volts: f64, of: f64| (FULL_SCALE * volts / of).clamp(0.0, FULL_SCALE - 1.0);
         self.running.board.converter.set(Reading {
             reference: parts(REFERENCE, volts).round() as u16,
             rail: parts(self.rail_mv / 1000.0, volts) as u16,
         });
-        // One by one, as on a serial line.
+        // The bytes arrive one by one, as on a serial line.
         for byte in bytes {
             self.running.board.send(&[*byte]);
             self.running.settle();

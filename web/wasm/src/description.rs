@@ -25,7 +25,7 @@ pub struct GaitEntry {
     pub period: f64,
     /// True if a servo moves in the course of a cycle.
     pub moves: bool,
-    /// True if its phase runs backwards.
+    /// True if the gait's phase runs backwards.
     pub reversed: bool,
 }
 
@@ -36,11 +36,11 @@ pub struct LinkEntry {
     pub key: String,
     /// Name shown to the user.
     pub label: &'static str,
-    /// Key of the length that mirrors it, or must equal it; it may be its own.
+    /// Key of the length on the other side, or that must be equal; the length's own key if there is none.
     pub twin: String,
     /// Unit: mm, or deg for an angle.
     pub unit: &'static str,
-    /// Value in this unit.
+    /// Value in `unit`.
     pub value: f64,
 }
 
@@ -58,9 +58,9 @@ pub struct MarginEntry {
 pub struct ServoEntry {
     /// Name, A1 to A4.
     pub name: &'static str,
-    /// Name of its leg, LF to LH.
+    /// Name of the servo's leg: LF, RF, RH or LH.
     pub leg: &'static str,
-    /// Arduino number of its pin; 14 to 19 are A0 to A5.
+    /// Arduino number of the servo's pin; 14 to 19 are A0 to A5.
     pub pin: u8,
     /// Neutral angle, deg, chassis frame.
     pub neutral: f64,
@@ -68,7 +68,7 @@ pub struct ServoEntry {
     pub travel: (f64, f64),
 }
 
-/// Names of two models: robot.toml's servos, and servos that follow their pulses exactly.
+/// Names of two servo models: the servos of robot.toml, and servos that follow their pulses exactly.
 const OWN: &str = "own";
 const IDEAL: &str = "ideal";
 
@@ -77,13 +77,13 @@ const IDEAL: &str = "ideal";
 pub struct ModelEntry {
     /// Name of the model.
     pub name: &'static str,
-    /// Stall torque, kg cm; time for 60 deg, s; the supply at which both hold, V; the supply in the
-    /// robot, V. `None` for ideal servos.
+    /// Stall torque, kg cm; time for 60 deg, s; the supply at which these two are specified, V; the supply
+    /// in the robot, V. `None` for ideal servos.
     pub figures: Option<[f64; 4]>,
 }
 
 impl ModelEntry {
-    /// The models between which the page can choose; the first is the default.
+    /// Returns the models that the page offers for a robot; the first is the default.
     fn all(robot: &Robot) -> Vec<Self> {
         let entry = |name, servo: &ServoType| Self {
             name,
@@ -104,7 +104,7 @@ impl ModelEntry {
     }
 }
 
-/// The servo model of this name for a robot. A name such as `copy at 4.2` sets another supply, V.
+/// Returns the servo model with a name for a robot. A name such as `copy at 4.2` sets another supply, V.
 /// `None` for an unknown name, or a supply that robot.toml does not allow.
 pub(crate) fn servo_model(robot: &Robot, name: &str) -> Option<ServoModel> {
     let (name, supply) = match name.split_once(" at ") {
@@ -133,7 +133,7 @@ pub struct PlateEntry {
     pub arms: Vec<[Spot; 2]>,
     /// Half the width of an arm.
     pub arm: f64,
-    /// The middles of the servos' cases.
+    /// Middles of the servos' cases.
     pub cases: [Spot; 4],
     /// Width and length of a case.
     pub case: Spot,
@@ -162,7 +162,7 @@ pub struct Description {
     pub name: String,
     /// Version of the firmware that the section is for.
     pub version: String,
-    /// Address of its section in flash, bytes.
+    /// Byte address of the robot's section in flash.
     pub start: u16,
     /// The servos A1 to A4.
     #[tsify(type = "Four<ServoEntry>")]
@@ -264,20 +264,20 @@ impl Description {
     }
 }
 
-/// The version of the core.
+/// Returns the version of the core.
 fn version() -> String {
     let mut version = String::new();
     Text::Version.print(&mut version);
     version
 }
 
-/// The reserved words of the console, which no gait may have as its name.
+/// Returns the reserved words of the console, which no gait may have as its name.
 fn words() -> Vec<&'static str> {
     let reserved = Word::ALL.iter().filter(|word| word.is_reserved());
     reserved.map(|word| word.text()).collect()
 }
 
-/// The name of each link, l0 to l19, and the number of its mirror image.
+/// The label of each link, l0 to l19, and the number of the mirrored link.
 const LINKS: [(&str, usize); 20] = [
     ("head base", 0),
     ("head crank, left", 4),
@@ -328,7 +328,7 @@ fn lengths(robot: &Robot) -> Vec<LinkEntry> {
         entry("leg.follower", "leg follower", "leg.crank", leg.follower),
         entry(ahead, "hip, fore and aft", ahead, feet.hip_forward),
     ];
-    // Derived hips may be wider in front than behind; then one number cannot describe both.
+    // If front and hind hips differ, as derived hips may, one number cannot describe both, so it is not offered.
     let aside = (front == hind).then(|| entry(aside, "hip, sideways", aside, front));
     let mount = entry(
         "leg.mount",

@@ -1,8 +1,8 @@
-//! A drawn gait: the point of head or tail follows a closed line.
+//! A drawn gait: the end point of head or tail follows a closed line.
 //!
-//! A line drawn by hand has corners, which no servo follows. So only its first few harmonics are
-//! kept, passed at an even speed. Two servos then follow by the robot's inverse kinematics, and
-//! every sample is checked as for any gait of a robot.toml.
+//! A line drawn by hand has corners, which no servo can follow. So the line is sampled at even
+//! distances and only its first few harmonics are kept. The angles of the two servos follow from
+//! the robot's inverse kinematics, and every sample is checked as for any gait of a robot.toml.
 
 use std::f64::consts::TAU;
 
@@ -13,21 +13,21 @@ use tsify::Tsify;
 
 use crate::room::neutral;
 
-/// Points at which a line is sampled.
+/// Number of points at which a line is sampled.
 const SAMPLES: usize = 256;
-/// Points of the line that is shown.
+/// Number of points of the path that is shown.
 const SHOWN: usize = 128;
-/// The smallest amplitude of a harmonic that is written, mm.
+/// Smallest amplitude of a harmonic that is written to robot.toml, mm.
 const MIN_AMPLITUDE: f64 = 0.05;
 /// Largest number of harmonics in a robot.toml.
 const MAX_TERMS: usize = 16;
 
-/// A gait along a line that was drawn.
+/// A gait whose end point of head or tail follows a drawn line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Tsify)]
 pub struct DrawnGait {
     /// Name of the gait in robot.toml.
     pub name: String,
-    /// End whose point follows the line: `head` or `tail`.
+    /// Five-bar whose end point follows the line: `head` or `tail`.
     #[tsify(type = "'head' | 'tail'")]
     pub end: String,
     /// Time of a cycle, s.
@@ -36,7 +36,7 @@ pub struct DrawnGait {
     pub size: f64,
     /// Number of harmonics that are kept, 1 to 16.
     pub terms: usize,
-    /// Points of the line, mm in the end's own frame; the last is joined to the first.
+    /// Points of the line, mm in the frame of head or tail; the last point is joined to the first.
     pub points: Vec<[f64; 2]>,
 }
 
@@ -45,7 +45,7 @@ impl DrawnGait {
         End::ALL.into_iter().find(|end| end.name() == self.end)
     }
 
-    /// The path that the point follows; `None` if the line has no length.
+    /// Returns the path that the end point follows; `None` for an unknown `end`, or if the line has no length.
     fn smoothed(&self, robot: &Robot) -> Option<Path> {
         let neutral = neutral(robot, self.end()?);
         let scaled = |[x, y]: &[f64; 2]| {
@@ -64,7 +64,7 @@ impl DrawnGait {
         Some(Path { centre, x, y })
     }
 
-    /// Writes the gait as tables of robot.toml; `None` if the line has no length.
+    /// Formats the gait as tables of robot.toml; `None` for an unknown `end`, or if the line has no length.
     #[must_use]
     pub fn table(&self, robot: &Robot) -> Option<String> {
         let path = self.smoothed(robot)?;
@@ -88,8 +88,8 @@ impl DrawnGait {
         ))
     }
 
-    /// Points of the line that the point follows, mm in the end's own frame; `None` if the
-    /// line has no length.
+    /// Returns points of the path that the end point follows, mm in the frame of head or tail; `None` for an
+    /// unknown `end`, or if the line has no length.
     #[must_use]
     pub fn path(&self, robot: &Robot) -> Option<Vec<[f64; 2]>> {
         let path = self.smoothed(robot)?;
@@ -101,7 +101,7 @@ impl DrawnGait {
     }
 }
 
-/// The mean of evenly spaced values over a cycle, and their first harmonics.
+/// Returns the mean of values that are evenly spaced over a cycle, and their first harmonics.
 fn harmonics(values: &[f64], terms: usize) -> (f64, Vec<Harmonic>) {
     let mean = |of: &dyn Fn(f64, f64) -> f64| {
         let each = values.iter().enumerate();
@@ -158,7 +158,7 @@ mod tests {
     use crate::paper::{TEXT, paper, with_twin};
     use crate::trial::EditedGait;
 
-    /// A circle about the neutral point of an end.
+    /// Makes a gait along a circle about the neutral point of head or tail.
     fn circle(robot: &Robot, end: End, radius: f64) -> DrawnGait {
         let [x, y] = neutral(robot, end);
         let point = |i: usize| {

@@ -1,9 +1,9 @@
 //! The search for a gait that walks faster than the edited one.
 //!
-//! The search of `lizard tune` takes minutes, and the page has one thread for it. So it tries one
-//! gait at a time: its caller can show the progress and the best gait so far, and stop at any
+//! The search of `lizard tune` takes minutes, and the page has one thread for it. So this search tries
+//! one gait per call: its caller can show the progress and the best gait so far, and stop at any
 //! time. The kinds of gait take turns, round by round; they do not depend on each other, so the
-//! final gait is that of `lizard tune` with the same numbers.
+//! final gait equals that of `lizard tune` with the same parameters.
 
 use lizard_robot::Bars;
 use lizard_tune::{Comparison, Kind, ScoredParameters, Search, Tuning, TuningError, trials};
@@ -13,12 +13,12 @@ use tsify::Tsify;
 
 use crate::refused::Refused;
 
-/// The task of a search: the given gait and the number of rounds.
+/// The task of a search: the gait to beat, and the parameters of the search.
 #[derive(Clone, Debug, PartialEq, Deserialize, Tsify)]
 pub struct SearchTask {
-    /// The given gait.
+    /// The gait to beat.
     pub bars: Bars,
-    /// Largest speed of a servo, deg/s; `None` for that of the given gait.
+    /// Largest speed of a servo, deg/s; `None` for the largest speed in the given gait.
     pub rate: Option<f64>,
     /// Rounds of the search, as `lizard tune --rounds` has them.
     pub rounds: usize,
@@ -29,7 +29,7 @@ pub struct SearchTask {
 /// The extent of a search.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct SearchExtent {
-    /// Number of gaits that it tries.
+    /// Number of gaits that the search tries.
     pub all: usize,
     /// Largest speed of a servo, deg/s.
     pub rate: f64,
@@ -38,9 +38,10 @@ pub struct SearchExtent {
 /// The progress of a search.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Progress {
-    /// Number of gaits that it has tried.
+    /// Number of gaits that the search has tried.
     pub done: usize,
-    /// Score of the best gait so far: the speed that 95 % of the random robots exceed, mm/s or deg/s.
+    /// Score of the best gait so far: the speed that 95 % of the random robots exceed, mm/s or deg/s; `None` while no
+    /// gait was valid.
     pub best: Option<f64>,
 }
 
@@ -49,10 +50,10 @@ pub struct Progress {
 pub struct Found {
     /// The gait that was found, with the name of the given one.
     pub bars: Bars,
-    /// Both gaits on random robots that the search has not used.
+    /// Comparison of the found and the given gait on random robots that the search has not used.
     #[tsify(type = "{ unit: string; rate: number; robots: number; faster: number }")]
     pub comparison: Comparison,
-    /// True if it is faster than the given gait.
+    /// True if the found gait is faster than the given gait.
     pub better: bool,
     /// Gain in the speed that 95 % of the robots exceed, as a share.
     pub gain: f64,
@@ -63,16 +64,16 @@ pub struct Found {
 pub struct Faster {
     tuning: Tuning,
     searches: [Search; Kind::ALL.len()],
-    /// Index of the kind that is being tried.
+    /// Index of the kind of gait that is being tried.
     turn: usize,
-    /// Scores of this round so far.
+    /// Scores of the current round of that kind so far.
     scores: Vec<Option<f64>>,
     progress: Progress,
     all: usize,
 }
 
 impl Faster {
-    /// Prepares a search with the robot and the floor of a twin. Takes as long as a few trials.
+    /// Prepares a search with the robot and the floor of a twin; takes as long as a few trials.
     ///
     /// # Errors
     /// Returns the limit that the given gait breaks, or the reason why it cannot be made faster.
@@ -104,7 +105,7 @@ impl Faster {
         })
     }
 
-    /// The extent of this search.
+    /// Returns the extent of this search.
     pub fn begun(&self) -> SearchExtent {
         SearchExtent {
             all: self.all,
@@ -131,7 +132,7 @@ impl Faster {
         self.progress.clone()
     }
 
-    /// Compares the best gait so far with the given one, on this number of random robots; none
+    /// Compares the best gait so far with the given one, on a number of random robots; `None`
     /// until a gait is within the robot's limits.
     pub fn found(&self, robots: usize) -> Option<Found> {
         let mut searches = self.searches.clone();
@@ -188,7 +189,7 @@ mod tests {
         assert_eq!(faster.found(20), None, "nothing is tried yet");
         let best = (0..3).map(|_| faster.step()).last().expect("three").best;
         let found = faster.found(20).expect("one");
-        // The same search without the page.
+        // The same trials by the search of `lizard tune`.
         let walk = robot.gait("walk").expect("there");
         let tuning = Tuning::new(&robot, robot.ground(), walk, None, "walk", 3).expect("straight");
         let trials = tuning.search(Kind::Wave).trials().to_vec();

@@ -1,4 +1,4 @@
-//! The values of the page's sliders: floor, mass, feet, and the drive of the legs.
+//! The values of the page's sliders: floor, mass, feet, and leg drive.
 
 use lizard_robot::{Body, Drive, Ground, Kind, Robot, Stance};
 use serde::{Deserialize, Serialize};
@@ -10,12 +10,12 @@ use tsify::Tsify;
 pub enum Legs {
     /// A rigid strut.
     Rigid,
-    /// A slotted strut with a spring, which yields one way.
+    /// A slotted strut with a spring, which yields in one direction.
     Strut,
 }
 
 impl Legs {
-    /// The name of the kind in robot.toml.
+    /// Returns the name of the kind in robot.toml.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
@@ -32,7 +32,7 @@ impl Legs {
     }
 }
 
-/// The floor, the mass and the drive of the legs. The rest of the ground is the robot's own.
+/// The floor, the mass, the feet and the leg drive. All other values of the ground are the robot's own.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Tsify)]
 pub struct Floor {
     /// Friction of a pad that slides forward, above 0.
@@ -56,7 +56,7 @@ pub struct Floor {
 }
 
 impl Floor {
-    /// The values of a robot.
+    /// Returns the values of a robot.
     #[must_use]
     pub fn of(robot: &Robot) -> Self {
         let ground = robot.ground();
@@ -103,7 +103,7 @@ impl Floor {
         }
     }
 
-    /// The robot's ground with these values.
+    /// Returns the robot's ground with these values.
     #[must_use]
     pub fn over(self, robot: &Robot) -> Ground {
         let (floor, ground) = (self.within(robot), robot.ground());

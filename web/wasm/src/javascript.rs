@@ -1,5 +1,5 @@
-//! The robot as JavaScript sees it: a class by wasm-bindgen. Values cross as JSON, which is the fastest way for objects with
-//! many small arrays; their types come from the structures of this crate.
+//! The robot as JavaScript sees it: a class by wasm-bindgen. Values are passed as JSON, which is fastest for objects
+//! with many small arrays; their types come from the structures of this crate.
 #![allow(clippy::missing_errors_doc)] // each fails if an argument has another type, and for no other reason
 
 use js_sys::JSON;
@@ -39,18 +39,18 @@ export interface Bars {
 }
 ";
 
-/// Converts an answer; where it cannot be written as JSON, to `null`.
+/// Converts an answer to JavaScript; to `null` if it cannot be written as JSON.
 pub(crate) fn js(answer: impl Serialize) -> JsValue {
     let text = serde_json::to_string(&answer).unwrap_or_default();
     JSON::parse(&text).unwrap_or(JsValue::NULL)
 }
 
-/// Converts an answer or a refusal, whose keys tell them apart.
+/// Converts an answer or a refusal to JavaScript, where their keys tell them apart.
 fn either(result: Result<impl Serialize, impl Serialize>) -> JsValue {
     result.map_or_else(js, js)
 }
 
-/// Converts an argument.
+/// Converts an argument from JavaScript.
 pub(crate) fn rust<T: DeserializeOwned>(value: &JsValue) -> Result<T, JsError> {
     let text = JSON::stringify(value).map_err(|_| JsError::new("this is no JSON"))?;
     Ok(serde_json::from_str(&String::from(text))?)
@@ -76,7 +76,7 @@ impl Robot {
         either(self.0.read(toml))
     }
 
-    /// Tries other lengths in a robot.toml; `searches` also looks for what would do.
+    /// Tries other lengths in a robot.toml; if `searches`, also looks for valid alternatives to refused lengths.
     #[wasm_bindgen(unchecked_return_type = "Lengths")]
     pub fn lengths(
         toml: &str,
@@ -87,14 +87,15 @@ impl Robot {
         Ok(js(Lengths::of(toml, &edits, searches)))
     }
 
-    /// The least and the greatest value with which the robot walks if all these lengths have it; null for an unknown key.
+    /// Returns the least and the greatest value with which the robot walks if all these lengths have it; null for an
+    /// unknown key or an invalid robot.toml.
     #[must_use]
     #[wasm_bindgen(js_name = lengthRange, unchecked_return_type = "[number, number] | null")]
     pub fn length_range(toml: &str, keys: Vec<String>) -> JsValue {
         js(lengths::range(toml, &keys))
     }
 
-    /// Returns the robot.toml with this floor, mass, feet and drive, and its refusal, if any.
+    /// Returns the robot.toml with this floor, mass, feet and leg drive, and its refusal, if any.
     #[wasm_bindgen(js_name = editFloor, unchecked_return_type = "Edited | Refused")]
     pub fn edit_floor(
         toml: &str,
@@ -110,7 +111,7 @@ impl Robot {
         self.0.section().unwrap_or_default()
     }
 
-    /// Moves the robot by a frame with these pulse widths, CPU cycles; 0 for none.
+    /// Moves the robot by a frame with these pulse widths, CPU cycles, 0 for no pulse; null without a robot.
     #[wasm_bindgen(unchecked_return_type = "Frame | null")]
     pub fn pulses(
         &mut self,
@@ -119,7 +120,7 @@ impl Robot {
         Ok(js(self.0.pulses(rust(widths)?)))
     }
 
-    /// Moves the robot to a pose, deg, reached some frames after the previous one.
+    /// Moves the robot to a pose, deg, which it reaches `frames` frames after the previous one; null without a robot.
     #[wasm_bindgen(unchecked_return_type = "Frame | null")]
     pub fn pose(
         &mut self,
@@ -134,7 +135,7 @@ impl Robot {
         self.0.restart();
     }
 
-    /// The displacement between two places in the frame of the first, mm and deg.
+    /// Returns the displacement between two places in the frame of the first, mm and deg.
     #[wasm_bindgen(unchecked_return_type = "{ forward: number; left: number; turn: number }")]
     pub fn between(
         #[wasm_bindgen(unchecked_param_type = "Place")] from: &JsValue,
@@ -144,7 +145,7 @@ impl Robot {
         Ok(js(Movement::from(from.movement_to(rust(to)?))))
     }
 
-    /// Sets the floor, the mass, the feet and the drive of the legs.
+    /// Sets the floor, the mass, the feet and the leg drive.
     #[wasm_bindgen(js_name = setFloor)]
     pub fn set_floor(
         &mut self,
@@ -154,27 +155,27 @@ impl Robot {
         Ok(())
     }
 
-    /// Selects the servo model by its name in the description, perhaps on another supply in V, as `own at 4.2`.
+    /// Selects the servo model by its name in the description; `own at 4.2` also sets the supply voltage.
     #[wasm_bindgen(js_name = setServos)]
     pub fn set_servos(&mut self, name: &str) {
         self.0.set_servos(name);
     }
 
-    /// Predicts a gait. Takes tenths of a second, so the page asks a worker.
+    /// Predicts a gait by its index; null without it. Takes tenths of a second, so the page asks a worker.
     #[must_use]
     #[wasm_bindgen(unchecked_return_type = "GaitPrediction | null")]
     pub fn predict(&self, gait: usize) -> JsValue {
         js(self.0.predict(gait))
     }
 
-    /// The map of the head (0) or the tail (1).
+    /// Makes the map of singularities of the head (0) or the tail (1); null without a robot.
     #[must_use]
     #[wasm_bindgen(unchecked_return_type = "Map | null")]
     pub fn map(&self, end: usize) -> JsValue {
         js(self.0.map(end))
     }
 
-    /// The gait in reverse.
+    /// Returns the gait in reverse.
     #[wasm_bindgen(unchecked_return_type = "Bars")]
     pub fn reversed(
         #[wasm_bindgen(unchecked_param_type = "Bars")] bars: &JsValue,
@@ -183,14 +184,15 @@ impl Robot {
         Ok(js(bars.reversed()))
     }
 
-    /// A gait as bars; null for a gait along a path and for one without motion.
+    /// Returns a gait, by its index, as bars; null for a gait along a path and for a gait without motion.
     #[must_use]
     #[wasm_bindgen(unchecked_return_type = "Bars | null")]
     pub fn bars(&self, gait: usize) -> JsValue {
         js(self.0.bars(gait))
     }
 
-    /// Tries a gait on the robot that was read; takes tenths of a second. Null for a line without length.
+    /// Tries a gait on the robot that was read; takes tenths of a second. Null without a robot, or for a drawn line
+    /// without length.
     #[wasm_bindgen(unchecked_return_type = "Trial | NoTrial | null")]
     pub fn trial(
         &self,
@@ -199,7 +201,8 @@ impl Robot {
         Ok(self.0.trial(&rust(made)?).map_or(JsValue::NULL, either))
     }
 
-    /// Returns the robot.toml with this gait in place of the one of that name.
+    /// Returns the robot.toml with a gait in place of the gait of the same name, else added; unchanged for a drawn
+    /// line without length.
     #[wasm_bindgen(js_name = putGait)]
     pub fn put_gait(
         &self,
@@ -210,7 +213,7 @@ impl Robot {
         Ok(text.unwrap_or_else(|| toml.to_owned()))
     }
 
-    /// The routines of a robot.toml, also of one with a mistake.
+    /// Returns the routines of a robot.toml, even of one that has a mistake.
     #[must_use]
     #[wasm_bindgen(unchecked_return_type = "Routine[]")]
     pub fn routines(toml: &str) -> JsValue {
@@ -224,14 +227,14 @@ impl Robot {
         js(Page::put_steps(toml, name, &steps))
     }
 
-    /// Goes through one round of a routine; takes tenths of a second. Null without the routine.
+    /// Simulates one round of a routine; takes tenths of a second. Null without the routine.
     #[must_use]
     #[wasm_bindgen(unchecked_return_type = "RoundPath | null")]
     pub fn round(&self, routine: &str) -> JsValue {
         js(self.0.round(routine))
     }
 
-    /// The path that the point really follows; null if the drawn line has no length.
+    /// Returns the path that the end point really follows; null if the drawn line has no length.
     #[wasm_bindgen(unchecked_return_type = "[number, number][] | null")]
     pub fn path(
         &self,
@@ -240,7 +243,7 @@ impl Robot {
         Ok(js(self.0.path(&rust(drawn)?)))
     }
 
-    /// The points that the head (0) or the tail (1) may reach.
+    /// Returns the area that the end point of the head (0) or the tail (1) may reach; null without a robot.
     #[must_use]
     #[wasm_bindgen(js_name = reachArea, unchecked_return_type = "ReachArea | null")]
     pub fn reach_area(&self, end: usize) -> JsValue {
@@ -253,7 +256,8 @@ impl Robot {
         self.0.run_core();
     }
 
-    /// Runs the core for a frame of 20 ms, after these bytes of the serial line, at a supply in V.
+    /// Runs the core for a frame of 20 ms at a supply in V, after it has received a text from the serial line; null
+    /// before `runCore`.
     #[wasm_bindgen(js_name = coreFrame, unchecked_return_type = "CoreFrame | null")]
     pub fn core_frame(&mut self, line: &str, volts: f64) -> JsValue {
         js(self.0.core_frame(line.as_bytes(), volts))
@@ -264,7 +268,8 @@ impl Robot {
 #[cfg(feature = "tune")]
 #[wasm_bindgen]
 impl Robot {
-    /// Prepares the search of a faster gait for the robot that was read: the number of gaits to try, and the servos' deg/s.
+    /// Prepares the search for a gait of the robot that was read; returns the number of gaits to try and the servos'
+    /// largest deg/s. Null without a robot.
     #[wasm_bindgen(js_name = makeFaster, unchecked_return_type = "SearchExtent | Refused")]
     pub fn make_faster(
         &mut self,
@@ -274,13 +279,14 @@ impl Robot {
         Ok(search.map_or(JsValue::NULL, either))
     }
 
-    /// Tries one more gait; `best` is the score of the best so far.
+    /// Tries one more gait; returns the progress, with the score of the best gait so far.
     #[wasm_bindgen(js_name = fasterStep, unchecked_return_type = "Progress")]
     pub fn faster_step(&mut self) -> JsValue {
         js(self.0.faster().map(|search| search.step()))
     }
 
-    /// The best so far, compared on a number of random robots; null while no gait kept the limits.
+    /// Returns the best gait so far, compared with the given one on a number of random robots; null while no gait has
+    /// kept the limits.
     #[wasm_bindgen(js_name = fasterFound, unchecked_return_type = "Found | null")]
     pub fn faster_found(&mut self, robots: usize) -> JsValue {
         js(self.0.faster().and_then(|search| search.found(robots)))

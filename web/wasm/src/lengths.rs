@@ -1,7 +1,8 @@
 //! Changed lengths of a robot and, if they are refused, valid alternatives.
 //!
-//! There are two, each checked as a complete robot: the nearest accepted lengths between those of
-//! the text and those wanted, and the lengths wanted without the gait that forbids them.
+//! There are two alternatives, each checked as a complete robot: the accepted lengths nearest to the
+//! wanted ones, on the line from the lengths in the text; and the wanted lengths without the gait that
+//! forbids them.
 
 use lizard_robot::Robot;
 use lizard_robot::edit::{NoSuchKey, with_number, without_gait};
@@ -11,7 +12,7 @@ use tsify::Tsify;
 use crate::description::Description;
 use crate::refused::Refused;
 
-/// Step of the lengths that are offered, mm, or deg for an angle.
+/// Step of the offered lengths, mm, or deg for an angle.
 const STEP: f64 = 0.5;
 
 /// Lengths, mm or deg, by their keys, such as `links.l2`.
@@ -20,13 +21,14 @@ type Wanted = [(String, f64)];
 /// The text of a robot.toml with other lengths, its refusal, and valid alternatives.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Lengths {
-    /// The text with the lengths wanted.
+    /// The text with the wanted lengths.
     text: String,
-    /// The refusal of this text; `None` if it is a robot.
+    /// The refusal of `text`; `None` if it is a valid robot.
     refusal: Option<Refused>,
-    /// The nearest lengths that are accepted; `None` if not searched or not found.
+    /// The nearest lengths that are accepted; `None` if none are needed, searched or found.
     nearest: Option<NearestLengths>,
-    /// The lengths wanted, without the gait that forbids them; `None` if not searched or no help.
+    /// The wanted lengths without the gait that forbids them; `None` if not needed or not searched, or if the text
+    /// without the gait is refused, too.
     without: Option<WithoutGait>,
 }
 
@@ -35,7 +37,7 @@ pub struct Lengths {
 pub struct NearestLengths {
     /// The lengths by their keys.
     lengths: Vec<(String, f64)>,
-    /// The text with them.
+    /// The text with these lengths.
     text: String,
 }
 
@@ -44,7 +46,7 @@ pub struct NearestLengths {
 pub struct WithoutGait {
     /// Name of the gait that is left out.
     gait: String,
-    /// The text without it.
+    /// The text without this gait.
     text: String,
 }
 
@@ -88,7 +90,7 @@ impl Lengths {
     }
 }
 
-/// The least and the greatest value, mm or deg, with which the lengths of all `keys` are accepted.
+/// Returns the least and the greatest value, mm or deg, with which the lengths of all `keys` are accepted.
 /// The search covers half to twice the present value; for an angle, 45 deg to either side. `None`
 /// if the text is no valid robot or has no such length.
 #[must_use]
@@ -123,7 +125,8 @@ fn with_lengths(text: &str, wanted: &Wanted) -> Result<String, NoSuchKey> {
     Ok(text)
 }
 
-/// Bisects between the lengths of the text and those wanted, down to a step.
+/// Bisects from the lengths in the text to the wanted ones, down to a step; `None` if no lengths in between are
+/// accepted.
 fn nearest(text: &str, wanted: &Wanted) -> Option<NearestLengths> {
     let own = Description::of(&Robot::parse(text).ok()?).lengths;
     let way: Vec<(&String, f64, f64)> = wanted
@@ -161,7 +164,7 @@ mod tests {
 
     const PAPER: &str = include_str!("../../../robots/paper.toml");
 
-    /// The lengths of a leg's crank and of the link that must equal it.
+    /// Returns a length for a leg's crank and for the follower, which must equal it.
     fn crank(mm: f64) -> [(String, f64); 2] {
         ["leg.crank", "leg.follower"].map(|key| (key.to_string(), mm))
     }

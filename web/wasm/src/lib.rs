@@ -1,10 +1,10 @@
-//! The robot for the page: everything that the browser computes of a lizard, without a formula
-//! of its own.
+//! The robot for the page: everything that the browser computes of a robot. This crate has no formula
+//! of its own; it calls those of the project's other crates.
 //!
-//! The page gives the text of a robot.toml and then, fifty times a second, four pulse widths, as
-//! the pins of a UNO have them. It gets back the place of every joint, the margin to every
-//! singularity, the guard's refusal of this pose, and the place of the body on the floor. [`Page`]
-//! holds all of that; [`Robot`] is its class for JavaScript.
+//! The page gives the text of a robot.toml and then, fifty times per second, the four pulse widths at
+//! the pins of a UNO. It gets back the place of every joint, the margin to every
+//! singularity, the guard's refusal of the pose, and the place of the body on the floor. [`Page`]
+//! holds this state; [`Robot`] is its class for JavaScript.
 //!
 //! # When not to use it
 //! The interface is made for this page and changes with it. A program in Rust uses `lizard-robot`

@@ -6,9 +6,9 @@ use lizard_robot::Robot;
 use serde::Serialize;
 use tsify::Tsify;
 
-/// Degrees between two points of the map.
+/// Step between adjacent points of the map, deg.
 const STEP: f64 = 1.5;
-/// The map's edges, deg: between the change points of the legs.
+/// The map's range of each crank angle, deg: from one change point of the legs to the other.
 const FROM: f64 = 0.0;
 const TO: f64 = 180.0;
 /// Step of the curves, deg.
@@ -41,10 +41,10 @@ pub struct Map {
     pub from: f64,
     /// Greatest angle of either crank, deg.
     pub to: f64,
-    /// Number of columns, and of rows; the first of either is at `from`.
+    /// Number of columns, which is also that of rows; the first column and the first row are at `from`.
     pub size: usize,
-    /// Smallest margins in hundredths, column by column: for each left crank all right ones. None
-    /// if the loop does not close.
+    /// Smallest margin at each point, in hundredths, column by column: for each left crank angle, all
+    /// right ones. `None` if the loop does not close.
     pub margins: Vec<Option<i8>>,
     /// True at points within the limits, in the order of `margins`.
     pub safe: Vec<bool>,
@@ -82,7 +82,8 @@ impl Map {
     }
 }
 
-/// Computes the smallest margin of an end at its crank angles; true if the limits allow them.
+/// Computes the smallest margin of an end at its crank angles, in hundredths; the bool is true if the limits
+/// allow these angles.
 fn evaluate(
     lizard: &Lizard,
     limits: &Limits,

@@ -35,13 +35,13 @@ pub struct Frame {
     scene: Option<Scene>,
     /// The message for the loop that does not close.
     fault: Option<String>,
-    /// Place of the body.
+    /// Place of the body on the floor.
     place: Place,
     /// Distance that each foot slid over the floor in this frame, mm, servo order.
     slides: [f64; 4],
     /// Lag of each leg behind its servo, deg, foot forward positive, servo order.
     lag: [f64; 4],
-    /// Error of each servo against its pulse, deg.
+    /// Target angle by the pulse less the angle of each servo, deg.
     errors: [f64; 4],
 }
 
@@ -50,7 +50,7 @@ pub struct Frame {
 pub struct Edited {
     /// The changed text.
     text: String,
-    /// The refusal of the changed text; `None` if it is a robot.
+    /// The refusal of the changed text; `None` if it is a valid robot.
     refusal: Option<Refused>,
 }
 
@@ -67,7 +67,7 @@ pub struct Page {
     twin: Option<Twin>,
     /// Latest target angles of the servos, deg, chassis frame.
     targets: [f64; 4],
-    /// Name of the servos, if it was set.
+    /// Name of the servo model that the page has set; `None` for the robot's own.
     model: Option<String>,
     run: Option<CoreRun>,
     #[cfg(feature = "tune")]
@@ -101,18 +101,18 @@ impl Page {
         self.twin.as_ref().map(Twin::robot)
     }
 
-    /// Makes the robot's section of flash; `None` without a robot. Its maps of certified cells take
-    /// some hundredths of a second to prove.
+    /// Makes the robot's section of flash; `None` without a robot. Takes some hundredths of a second, for the
+    /// proof of the guard's certified cells.
     #[must_use]
     pub fn section(&self) -> Option<Vec<u8>> {
         Some(self.robot()?.section())
     }
 
-    /// Sets the floor, the mass, the feet and the drive of the legs in the text of a robot.toml.
-    /// Values that do not change stay as they are written. The page's robot stays as it is.
+    /// Sets the floor, the mass, the feet and the leg drive in the text of a robot.toml.
+    /// Values that do not change stay as they are written. The page's robot does not change.
     ///
     /// # Errors
-    /// Fails if the text is not a robot, or one of the numbers cannot be added to it.
+    /// Fails if the text is no valid robot, or if one of the numbers cannot be added to it.
     pub fn edit_floor(text: &str, floor: Floor) -> Result<Edited, Refused> {
         let robot = Robot::parse(text)?;
         let own = Floor::of(&robot);
@@ -150,8 +150,8 @@ impl Page {
         Ok(Edited::of(text))
     }
 
-    /// Follows the pulses of a frame: widths in CPU cycles, 0 for none, which leaves a
-    /// servo where it is.
+    /// Follows the pulses of a frame: widths in CPU cycles, 0 for no pulse, which leaves a
+    /// servo where it is. `None` without a robot.
     pub fn pulses(&mut self, widths: [u32; 4]) -> Option<Frame> {
         let twin = self.twin.as_mut()?;
         let us = |width: u32| f64::from(width) / CYCLES_PER_US;
@@ -160,8 +160,9 @@ impl Page {
         Some(frame(twin, &state, state.slip))
     }
 
-    /// Follows a pose that a robot reports: angles in deg, chassis frame, this number of frames
-    /// after the previous one. The frames in between are interpolated.
+    /// Follows a pose that a robot reports: angles in deg, chassis frame, `frames` frames after the
+    /// previous pose. The frames in between are interpolated. `None` without a robot, or if an angle is
+    /// not finite.
     pub fn pose(&mut self, angles: [f64; 4], frames: u32) -> Option<Frame> {
         let twin = self.twin.as_mut()?;
         if angles.iter().any(|angle| !angle.is_finite()) {
@@ -187,22 +188,22 @@ impl Page {
         Some(frame(twin, &state, slides))
     }
 
-    /// Puts the robot back at its start.
+    /// Puts the robot back to its start on the floor.
     pub fn restart(&mut self) {
         if let Some(twin) = &mut self.twin {
             twin.set_place(Walked::START);
         }
     }
 
-    /// Sets the floor, the mass, the feet and the drive of the legs from the next frame on.
+    /// Sets the floor, the mass, the feet and the leg drive from the next frame on.
     pub fn set_floor(&mut self, floor: Floor) {
         if let Some(twin) = &mut self.twin {
             twin.set_ground(floor.over(twin.robot()));
         }
     }
 
-    /// Sets the model of the servos by its name in [`Description::models`], perhaps with a supply in
-    /// V, as `own at 4.2`; an unknown name changes nothing if a robot was read.
+    /// Sets the servo model by its name in [`Description::models`]; `own at 4.2` also sets the supply
+    /// voltage. An unknown name has no effect.
     pub fn set_servos(&mut self, name: &str) {
         let Some(twin) = &mut self.twin else {
             self.model = Some(name.to_owned());
@@ -214,14 +215,16 @@ impl Page {
         }
     }
 
-    /// Predicts a cycle of a gait on the current floor with the current servos.
+    /// Predicts a cycle of a gait, by its index, on the current floor with the current servos; `None` without a
+    /// robot or such a gait.
     pub fn predict(&self, gait: usize) -> Option<GaitPrediction> {
         let twin = self.twin.as_ref()?;
         let gait = twin.robot().gaits().get(gait)?;
         Some(GaitPrediction::of(twin, gait))
     }
 
-    /// The bars of a gait; `None` if it stands or follows a path.
+    /// Returns a gait, by its index, as bars; `None` without a robot or such a gait, or if the gait stands or follows
+    /// a path.
     pub fn bars(&self, gait: usize) -> Option<Bars> {
         self.robot()?.gaits().get(gait)?.bars()
     }
@@ -234,20 +237,21 @@ impl Page {
         made.trial(self.twin.as_ref()?)
     }
 
-    /// The text of the page's robot with a gait, in place of the gait of the same name or at the
+    /// Returns the text of a robot.toml with a gait, in place of the gait of the same name or at the
     /// end; `None` if no robot was read, or the drawn line has no length.
     pub fn put_gait(&self, text: &str, made: &EditedGait) -> Option<String> {
         made.put_into(text, self.robot()?)
     }
 
-    /// Sets the steps of a routine in the text of a robot.toml, or adds the routine. The page's robot stays as it is.
+    /// Sets the steps of a routine in the text of a robot.toml, or adds the routine. The page's robot does not
+    /// change.
     #[must_use]
     pub fn put_steps(text: &str, name: &str, steps: &[String]) -> Edited {
         Edited::of(with_steps(text, name, steps))
     }
 
-    /// The path of one round of a routine on the current floor with the current servos; `None`
-    /// without the routine.
+    /// Simulates one round of a routine on the current floor with the current servos; `None`
+    /// without a robot or the routine.
     pub fn round(&self, routine: &str) -> Option<RoundPath> {
         RoundPath::of(self.twin.as_ref()?, routine)
     }
@@ -262,28 +266,30 @@ impl Page {
         Some(search.map(|faster| self.faster.insert(faster).begun()))
     }
 
-    /// The search that was started last.
+    /// The search that was prepared last; `None` if none was since the robot was read.
     #[cfg(feature = "tune")]
     pub fn faster(&mut self) -> Option<&mut Faster> {
         self.faster.as_mut()
     }
 
-    /// The line that the point of an end follows in a drawn gait.
+    /// Returns the path that the end point of head or tail follows in a drawn gait; `None` without a robot, or if the
+    /// drawn line has no length.
     pub fn path(&self, drawn: &DrawnGait) -> Option<Vec<[f64; 2]>> {
         drawn.path(self.robot()?)
     }
 
-    /// The places that the point of the head (0) or the tail (1) may reach.
+    /// Returns the area that the end point of the head (0) or the tail (1) may reach; `None` without a robot.
     pub fn reach_area(&self, end: usize) -> Option<ReachArea> {
         Some(ReachArea::of(self.robot()?, *End::ALL.get(end)?))
     }
 
-    /// The map of singularities of the head (0) or the tail (1).
+    /// Makes the map of singularities of the head (0) or the tail (1); `None` without a robot.
     pub fn map(&self, end: usize) -> Option<Map> {
         Some(Map::of(self.robot()?, *End::ALL.get(end)?))
     }
 
-    /// Runs the core with this robot's numbers from power-on; the EEPROM keeps its content.
+    /// Starts the core at power-on with this robot; the EEPROM keeps the content of the previous run, if the robot
+    /// was not read again since.
     pub fn run_core(&mut self) {
         let memory = self
             .run
@@ -293,13 +299,14 @@ impl Page {
         self.run = robot.map(|robot| CoreRun::begin(*robot.firmware(), memory));
     }
 
-    /// Runs a frame of the core, after bytes from the serial line, at a supply in V.
+    /// Runs a frame of the core at a supply in V, after it has received bytes from the serial line; `None` before
+    /// [`Page::run_core`].
     pub fn core_frame(&mut self, bytes: &[u8], volts: f64) -> Option<CoreFrame> {
         Some(self.run.as_mut()?.frame(bytes, volts))
     }
 }
 
-/// Most frames between two poses; after a longer pause the motion in between is unknown.
+/// Largest number of interpolated frames between two poses; after a longer pause the motion is unknown anyway.
 const MAX_FRAMES: u32 = 50;
 
 fn frame(twin: &Twin, state: &State, slides: [f64; 4]) -> Frame {

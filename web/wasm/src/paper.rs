@@ -1,4 +1,4 @@
-//! The robot of the paper, for tests.
+//! The paper's robot, for tests.
 
 use lizard_robot::Robot;
 use lizard_twin::{ServoModel, Twin};
@@ -11,7 +11,7 @@ pub fn paper() -> Robot {
     Robot::parse(TEXT).expect("right")
 }
 
-/// Reads the paper's robot and makes its twin with ideal servos.
+/// Reads the paper's robot, and makes a twin of it with ideal servos.
 pub fn with_twin() -> (Robot, Twin) {
     let robot = paper();
     let twin = Twin::new(&robot, ServoModel::Ideal);

@@ -16,7 +16,7 @@ pub struct Place {
 }
 
 impl Place {
-    /// The movement from this place to another, seen from this one.
+    /// Returns the displacement from this place to another, in the frame of this place.
     #[must_use]
     pub fn movement_to(self, other: Self) -> Travel {
         Walked::from(other).seen_from(self.into())

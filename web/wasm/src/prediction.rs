@@ -1,12 +1,12 @@
-//! The prediction of a gait as the page reads it: how far a cycle goes on the current floor, and how much of their line its
-//! servos use at each pace.
+//! The prediction of a gait as the page reads it: the displacement per cycle on the current floor, and the share of
+//! their torque-speed line that the servos use at each pace.
 
 use lizard_robot::{CheckedGait, Effort, Ground, Prediction, SpringCost, Travel};
 use lizard_twin::{ServoModel, Twin};
 use serde::Serialize;
 use tsify::Tsify;
 
-/// The movement of a cycle as the page reads it.
+/// The displacement per cycle as the page reads it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Tsify)]
 pub struct Movement {
     /// Ahead, mm; `None` if it is undetermined.
@@ -43,28 +43,28 @@ impl From<Prediction> for Movement {
 }
 
 impl Movement {
-    /// The movement ahead, mm; `None` if it is undetermined.
+    /// The distance ahead, mm; `None` if it is undetermined.
     #[must_use]
     pub fn forward(&self) -> Option<f64> {
         self.forward
     }
 }
 
-/// The steps of the page's slider up to the gait's own pace.
+/// Number of steps of the page's pace slider up to the gait's own pace.
 const PACES: usize = 20;
 
 /// The prediction of a cycle of a gait.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Tsify)]
 pub struct GaitPrediction {
-    /// Movement of the body.
+    /// Displacement of the body per cycle.
     #[serde(flatten)]
     pub movement: Movement,
     /// Largest lag of a leg, deg; `None` if legs are rigid.
     pub lag: Option<f64>,
-    /// The distance relative to that of rigid legs; `None` if legs are rigid, or rigid legs go
-    /// nowhere.
+    /// The displacement relative to that with rigid legs; `None` if legs are rigid, or if the displacement with
+    /// rigid legs is zero.
     pub share: Option<f64>,
-    /// Largest share of a servo's line at each step of the pace; none with ideal servos.
+    /// Largest share of its torque-speed line that a servo uses, at each step of the pace; `None` with ideal servos.
     #[tsify(type = "number[] | null")]
     pub lines: Option<[f64; PACES]>,
 }

@@ -5,7 +5,7 @@ use lizard_robot::edit::NoSuchKey;
 use serde::Serialize;
 use tsify::Tsify;
 
-/// A refusal: the message that the user sees, and its key.
+/// A refusal: the message that the user sees, and the key in robot.toml to which it refers.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Tsify)]
 pub struct Refused {
     /// The message for the user: what is wrong, and where.
@@ -14,7 +14,7 @@ pub struct Refused {
     pub meaning: Option<String>,
     /// Line of the file, counted from 1; `None` if the refusal belongs to no line.
     pub line: Option<usize>,
-    /// Full name of the key, such as `links.l2`; may be empty.
+    /// Full name of the key, such as `links.l2`; empty if the refusal belongs to no key.
     pub key: String,
 }
 

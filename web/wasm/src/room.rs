@@ -1,6 +1,6 @@
-//! The reach of an end's point: the part of its plane in which a path can be drawn.
+//! The reach of head and tail: the part of the plane in which a path of the end point can be drawn.
 //!
-//! With the other end at neutral, a point is allowed if the inverse kinematics has crank angles
+//! The other end is at neutral. A point is allowed if the inverse kinematics has crank angles
 //! for it and the limits allow the pose with these angles.
 
 use lizard_kinematics::{End, Vector, wrap};
@@ -8,33 +8,33 @@ use lizard_robot::Robot;
 use serde::Serialize;
 use tsify::Tsify;
 
-/// Number of steps across twice the reach.
+/// Number of grid steps across the plane, which is twice as wide as the longest reach.
 const STEPS_ACROSS: i32 = 160;
-/// Number of points that are kept around the allowed ones.
+/// Width of the rim that is kept around the allowed points, in points.
 const RIM: i32 = 2;
-/// Largest distance of two points that count as the same, mm.
+/// Largest distance between two points that count as the same, mm.
 const SAME_POINT_MM: f64 = 1e-6;
 
-/// The area that an end's point can reach: mm in the end's own frame, from the middle of its base,
-/// outward positive in y.
+/// The area that an end's point can reach, as a grid: mm in the end's own frame, whose origin is the middle of
+/// the end's base and whose y axis points outward.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct ReachArea {
     /// The first point of the first row.
     pub from: [f64; 2],
-    /// Distance of two points, mm.
+    /// Distance between neighbouring points, mm.
     pub step: f64,
     /// Number of points in a row.
     pub columns: usize,
     /// True at allowed points, row by row.
     pub allowed: Vec<bool>,
-    /// The point in the neutral pose.
+    /// The end point in the neutral pose.
     pub neutral: [f64; 2],
     /// The shafts of the two cranks.
     pub shafts: [[f64; 2]; 2],
 }
 
 impl ReachArea {
-    /// Computes the area that the point of an end can reach.
+    /// Computes the area that the end point of head or tail can reach.
     #[must_use]
     pub fn of(robot: &Robot, end: End) -> Self {
         let bars = robot.lizard().end(end);
@@ -58,7 +58,7 @@ impl ReachArea {
             let column = usize::try_from(column + half).ok();
             row.zip(column).and_then(|(row, column)| row.get(column)) == Some(&true)
         };
-        // The allowed points, and a rim around them.
+        // The range of columns or rows with allowed points, and a rim around it.
         let span = |has: &dyn Fn(i32) -> bool| {
             let smallest = (-half..=half).find(|at| has(*at)).unwrap_or(0);
             let largest = (-half..=half).rev().find(|at| has(*at)).unwrap_or(0);
@@ -83,7 +83,7 @@ impl ReachArea {
     }
 }
 
-/// The point of an end in the neutral pose, mm.
+/// The end point of head or tail in the neutral pose, mm, in the end's own frame.
 pub fn neutral(robot: &Robot, end: End) -> [f64; 2] {
     let solution = robot.lizard().solve(&robot.neutral());
     let point = solution.map(|solution| solution.end(end).end_point);
@@ -98,7 +98,7 @@ fn allows(robot: &Robot, end: End, [x, y]: [f64; 2]) -> bool {
     for servo in end.servos() {
         angles[servo] += wrap(pair[servo % 2] - angles[servo]);
     }
-    // The cranks may put the point on their other side instead.
+    // With these crank angles, the robot's assembly mode may put the end point elsewhere.
     robot.accepted(angles).is_some_and(|solution| {
         let there = solution.end(end).end_point;
         (there.x - x).hypot(there.y - y) < SAME_POINT_MM
@@ -123,10 +123,9 @@ mod tests {
             };
             assert!(place(room.neutral), "{end}");
             assert_eq!(room.allowed.len() % room.columns, 0);
-            // The first row is a rim of points that are not allowed, so that the
-            // shape's edge is seen.
+            // The first row belongs to the rim of points that are not allowed, so that the area's edge is visible.
             assert!(room.allowed[..room.columns].iter().all(|allowed| !allowed));
-            // The gesture `look` stays in it: 10 mm to either side of 54 mm outward.
+            // The gesture `look` stays in the area: 10 mm to either side of 54 mm outward.
             for x in [-10.0, 0.0, 10.0] {
                 assert!(place([x, 54.0]), "{end} {x}");
             }

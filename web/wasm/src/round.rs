@@ -1,4 +1,4 @@
-//! The path of one round of a routine, with the page's floor and servos.
+//! The path of one round of a routine, on the page's floor with the page's servos.
 
 use lizard_robot::servo::FORWARD;
 use lizard_robot::{FRAMES_PER_SECOND, Place as Walked, Robot};
@@ -8,17 +8,17 @@ use tsify::Tsify;
 
 use crate::place::Place;
 
-/// Largest number of frames of a path, two minutes: a step may wait forever, and a routine may take
-/// hours.
+/// Largest number of frames of a path, two minutes: a step may wait forever, and a routine may last
+/// for hours.
 const MAX_FRAMES: usize = 6_000;
 
-/// Frames from one place of the path to the next, a tenth of a second.
+/// Number of frames from one place of the path to the next: a tenth of a second.
 const FRAMES: usize = 5;
 
-/// The path of a round from standing.
+/// The path of a round that begins with the robot standing.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct RoundPath {
-    /// Places one after another; the last one is the end.
+    /// Places in the order of time, the last one at the end of the path.
     pub places: Vec<Place>,
     /// Time of the path, s.
     pub seconds: f64,
@@ -27,8 +27,8 @@ pub struct RoundPath {
 }
 
 impl RoundPath {
-    /// Simulates one round of a routine, with the floor and the servos of a twin, which does not
-    /// move; `None` without the routine.
+    /// Simulates one round of a routine, with the floor and the servos of a twin, whose own place and pose do not
+    /// change; `None` without the routine.
     #[must_use]
     pub fn of(twin: &Twin, name: &str) -> Option<Self> {
         let robot: &Robot = twin.robot();
@@ -73,7 +73,7 @@ mod tests {
         let Some(Place { x, y, heading }) = square.places.last() else {
             panic!("no end")
         };
-        // 34.17 mm and 15.34 deg a cycle; the changes between the gaits move it by some mm, too.
+        // 34.17 mm and 15.34 deg per cycle; the transitions between the gaits move the robot by some mm, too.
         let turned = (6.0_f64 * 15.34).to_radians();
         let ahead = 3.0 * 34.17;
         assert!((heading - 6.0 * 15.34).abs() < 3.0, "{heading}");

@@ -26,7 +26,7 @@ impl From<Vector> for Spot {
 /// A leg at a pose.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct LegScene {
-    /// Pivots on the chassis, that of the driven crank first.
+    /// Pivots on the chassis, the driven crank's first.
     pub pivots: [Spot; 2],
     /// Joints of the link that carries the foot.
     pub joints: [Spot; 2],
@@ -45,7 +45,7 @@ pub struct SliderScene {
     pub shafts: [Spot; 2],
     /// Tips of the front and the rear arm.
     pub tips: [Spot; 2],
-    /// End of the rear half, in which the front half slides.
+    /// Front end of the slider's rear half, into which the front half slides.
     pub tube: Spot,
     /// Travel from nominal, mm.
     pub travel: f64,
@@ -69,7 +69,7 @@ pub struct Scene {
     pub shafts: [Spot; 4],
     /// Tips of the cranks in servo order.
     pub tips: [Spot; 4],
-    /// Points of head and tail.
+    /// End points of head and tail.
     pub points: [Spot; 2],
     /// The sliders, left and right.
     #[tsify(type = "[SliderScene, SliderScene]")]
@@ -83,7 +83,7 @@ pub struct Scene {
     pub smallest: Margin,
     /// The message for the limit that this pose breaks; `None` if it is allowed.
     pub refusal: Option<String>,
-    /// The points on the maps of singularities of head and tail.
+    /// The pose's points on the maps of singularities of head and tail.
     pub map: [MapPoint; 2],
 }
 
@@ -200,7 +200,7 @@ mod tests {
 
     #[test]
     fn a_loop_that_does_not_close_is_named() {
-        // Couplers that barely reach at neutral.
+        // Couplers that barely reach each other in the neutral pose.
         let short = ["l2", "l3"].iter().fold(TEXT.to_string(), |text, link| {
             text.replace(&format!("{link} = 50.0"), &format!("{link} = 34.0"))
         });

@@ -1,7 +1,7 @@
-//! An edited gait, tried on a robot before it is in any file.
+//! The trial of an edited gait on a robot, before the gait is written to any file.
 //!
-//! Only the gait that is tried is checked, so that an answer comes while a person drags. A
-//! refusal offers the nearest smaller gait and the nearest longer period that are possible.
+//! Only the edited gait is checked, so that the answer comes while the user drags. A
+//! refusal offers the nearest smaller gait and the nearest longer period that are valid.
 
 use lizard_robot::servo::NAMES;
 use lizard_robot::{Bars, Robot, edit};
@@ -13,9 +13,9 @@ use crate::drawn::DrawnGait;
 use crate::prediction::GaitPrediction;
 use crate::refused::Refused;
 
-/// The smallest gait that is offered: tenths of a deg, or hundredths of the drawn size.
+/// Smallest gait that is offered: tenths of a degree of amplitude, or hundredths of the drawn size.
 const MIN_SIZE: i64 = 5;
-/// The longest period that is offered, in hundredths of a second.
+/// Longest period that is offered, in hundredths of a second.
 const MAX_PERIOD: i64 = 1000;
 
 /// An edited gait.
@@ -31,7 +31,7 @@ pub enum EditedGait {
 /// The figures of a valid gait.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Trial {
-    /// Movement of a cycle.
+    /// Predicted displacement per cycle.
     #[serde(flatten)]
     pub outlook: GaitPrediction,
     /// The gait's table for robot.toml.
@@ -50,23 +50,23 @@ pub struct Trial {
     pub period: f64,
 }
 
-/// A valid value in place of the wanted one.
+/// A valid value in place of one in a refused gait.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Alternative {
-    /// Name of the value: `amplitude`, `size` or `period`.
+    /// Name of the value that changes: `amplitude`, `size` or `period`.
     #[tsify(type = "'amplitude' | 'size' | 'period'")]
     pub what: &'static str,
     /// The value in deg, as a share, or in s.
     pub value: f64,
 }
 
-/// The refusal of a gait, with possible values.
+/// The refusal of a gait, with valid alternatives.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct NoTrial {
     /// The refusal.
     #[serde(flatten)]
     pub refused: Refused,
-    /// The nearest possible values, each of them alone.
+    /// The nearest valid values; each is valid if it alone is changed.
     pub instead: Vec<Alternative>,
 }
 
@@ -78,19 +78,19 @@ impl EditedGait {
         }
     }
 
-    /// The text of a robot.toml with this gait, in place of the gait of the same name or at the
-    /// end; `None` if its line has no length.
+    /// Returns the text of a robot.toml with this gait, in place of the gait of the same name or at the
+    /// end; `None` if the drawn line has no length.
     #[must_use]
     pub fn put_into(&self, text: &str, robot: &Robot) -> Option<String> {
         let (Self::DrawnGait(DrawnGait { name, .. }) | Self::Bars(Bars { name, .. })) = self;
         Some(edit::with_gait(text, name, &self.table(robot)?))
     }
 
-    /// Tries the gait with the robot, the floor and the servos of a twin; `None` if its line has
+    /// Tries the gait with the robot, the floor and the servos of a twin; `None` if the drawn line has
     /// no length.
     ///
     /// # Errors
-    /// Returns the first limit that the gait breaks, with possible values.
+    /// Returns the first limit that the gait breaks, with valid alternatives.
     #[must_use]
     pub fn trial(&self, twin: &Twin) -> Option<Result<Trial, NoTrial>> {
         let table = self.table(twin.robot())?;
@@ -100,7 +100,7 @@ impl EditedGait {
         }))
     }
 
-    /// Finds the nearest smaller gait and the nearest longer period that are possible.
+    /// Finds the nearest smaller gait and the nearest longer period that are valid.
     fn instead(&self, robot: &Robot) -> Vec<Alternative> {
         let is_possible = |change: &dyn Fn(&mut Self)| {
             let mut other = self.clone();
@@ -139,7 +139,7 @@ impl EditedGait {
     }
 }
 
-/// Tries the gait of a table.
+/// Tries the gait of a table in the format of robot.toml.
 fn try_table(table: String, twin: &Twin) -> Result<Trial, Refused> {
     let robot = twin.robot().with_gait(&table).map_err(Refused::of_gait)?;
     let mut other = Twin::new(&robot, twin.servos());
@@ -167,8 +167,8 @@ fn try_table(table: String, twin: &Twin) -> Result<Trial, Refused> {
     })
 }
 
-/// Finds the possible number nearest to `from`, by bisection: if a number is possible, so are
-/// those nearer to `to`.
+/// Finds the possible number nearest to `from`, by bisection from `from` to `to`: if a number is possible, so must be
+/// all numbers nearer to `to`. `None` if `to` is not possible, or equals `from`.
 fn nearest(from: i64, to: i64, is_possible: impl Fn(i64) -> bool) -> Option<i64> {
     let way = (to - from).signum();
     if way == 0 || !is_possible(to) {

@@ -1,4 +1,4 @@
-//! The least cost compared with the dual problem, for random pads and springs.
+//! The minimum cost, checked against the lower bound of the dual problem for random pads and springs.
 
 use super::*;
 use proptest::prelude::*;
@@ -39,10 +39,10 @@ fn cost(pads: &Pads, displacement: &Displacement) -> f64 {
     friction + pads.compliance.map_or(0.0, energy)
 }
 
-/// Proves a lower bound by duality: forces within the pads' friction that balance each other do at least
-/// `sum f . swing` of work for any movement of the body, minus what their torques can gain on the springs. So
-/// the forces at a displacement, if they balance, bound the difference of its cost from the minimum. Returns
-/// their imbalance and that bound.
+/// Bounds by duality how far the cost of a displacement is above the minimum. It takes the friction forces of the
+/// displacement's slides. If their sum and their torque are zero, no movement of the body costs less than their
+/// work `sum f . swing`, minus what their torques can gain on the springs. Returns the sum and the torque, and the
+/// cost minus this lower bound.
 fn certificate(pads: &Pads, displacement: &Displacement) -> ([f64; 3], f64) {
     let eps = largest(&pads.swing) * MIN_ROUNDING;
     let (mut work, mut net) = (0.0, [0.0; 3]);
@@ -123,7 +123,7 @@ fn a_single_pad_that_swings_alone_moves_nothing() {
 
 #[test]
 fn legs_that_swing_against_each_other_turn_the_body() {
-    // Pads that move as a rigid turn by 0.01 rad are followed exactly.
+    // The pads move as one rigid body that turns by -0.01 rad, so the body turns by 0.01 rad and no pad slides.
     let swing = AT.map(|[x, y]| [0.01 * y, -0.01 * x]);
     let twist = pads(AT, swing).minimum().twist;
     assert!((twist[2] - 0.01).abs() < 1e-9 && twist[0].abs() < 1e-7 && twist[1].abs() < 1e-7);
@@ -160,7 +160,7 @@ proptest! {
         prop_assert!(cost(&pads, &min) <= cost(&pads, &other) + 1e-6);
     }
 
-    // Play together with stops, and slotted struts that yield one way.
+    // Every leg has play. Below it is a stop; above it is a stop, too, or a slotted strut.
     #[test]
     fn no_place_within_the_play_or_the_slot_costs_less(
         swing in prop::array::uniform4(point(5.0)),
@@ -175,8 +175,8 @@ proptest! {
         let far = [22.0 * cos - 30.2, 22.0 * sin];
         let angle = far[1].atan2(far[0]) - arm.to_radians();
         let stretch = Stretch::new(far[0].hypot(far[1]), 22.0, angle);
-        // The spring of the paper's size; one without a rate would pull less the
-        // further it is stretched, where its lever shrinks.
+        // The spring of a robot of the paper's size. Without a rate, its torque would fall as the strut
+        // grows, because its lever shrinks.
         let upper = force.map_or(Side::Stop, |force| Side::strut(stretch, force, 1.5, 5.0));
         let drive = LagEnergy { play, stop: STOP, lower: Side::Stop, upper, motor: None };
         let compliance = Some(Compliance {

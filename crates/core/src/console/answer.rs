@@ -22,14 +22,15 @@ pub enum Answer {
     HelpHint,
     /// The end of help, `ok help`.
     HelpDone,
-    /// `ok`, the motion and its pose; the next answer continues the line. It is written in three parts, so that
-    /// a frame is delayed by at most one of them.
+    /// `ok`, the motion and its pose: the first of the three parts of a `status` line. Each part is written
+    /// separately, so that a frame is delayed by at most one of them.
     Status,
-    /// The margin, whose measurement takes most of a frame; the pace; the frame count.
+    /// The second part of a `status` line: the margin, whose measurement takes most of a frame; the pace; the
+    /// frame count.
     StatusMargin,
-    /// Counters, faults, restarts and supplies.
+    /// The last part of a `status` line: counters, faults, restarts and supplies.
     StatusHealth,
-    /// A line of the settings, by its number; after the last one `ok cal`.
+    /// A line of the settings, by its number; the line after the settings is `ok cal`.
     Settings(u8),
     /// `err`, since the line is not a command; nothing was changed.
     Misread(Misread),

@@ -83,11 +83,11 @@ enum Syntax {
 struct Form {
     /// True if the first argument is a servo's number.
     takes_servo: bool,
-    /// The number of arguments after the servo.
+    /// The number of arguments, without the servo.
     count: u8,
-    /// The syntax of each of these arguments.
+    /// The syntax of each argument except the servo.
     syntax: Syntax,
-    /// The range of each of these arguments, without its sign.
+    /// The smallest and the largest magnitude of each argument except the servo.
     min: u16,
     max: u16,
     /// The message for arguments that do not match this form.
@@ -133,8 +133,8 @@ pub fn parse(line: &[u8], robot: &Robot) -> Result<Command, Misread> {
     parse_among::<RESERVED>(line, robot)
 }
 
-/// Parses a line; a gait has priority over a word of the same name whose number is `YIELDING`
-/// or more.
+/// Parses a line; a gait has priority over a word of the same name whose number is
+/// `FIRST_YIELDING` or more.
 #[inline(never)]
 fn parse_among<const FIRST_YIELDING: usize>(
     line: &[u8],
@@ -183,8 +183,8 @@ fn parse_among<const FIRST_YIELDING: usize>(
     }))
 }
 
-/// The effect of a line on the servos: that of its word, or of a gait. A line that is not
-/// a command has none.
+/// The effect of a line on the servos: the effect of its word; [`Effect::Moves`] for a gait;
+/// [`Effect::None`] for a line that is not a command.
 pub fn effect(line: &str, robot: &Robot) -> Effect {
     let line = line.as_bytes();
     match parse(line, robot) {
@@ -282,8 +282,9 @@ impl<'a> Words<'a> {
     }
 }
 
-/// Finds the gait of this name, and reads the number of cycles after it; 0 without one. Any blanks between
-/// words are accepted. If a gait's name is that of another gait and a number, the longer name counts.
+/// Finds the gait whose name begins the line, and reads the number of cycles after the name; 0 if there is none.
+/// Any blanks between words are accepted. If a gait's name is that of another gait and a number, the longer name
+/// has priority.
 #[inline(never)]
 fn parse_gait(line: &[u8], robot: &Robot) -> Result<(GaitId, u16), Misread> {
     let line = line.trim_ascii_start();
@@ -299,8 +300,8 @@ fn parse_gait(line: &[u8], robot: &Robot) -> Result<(GaitId, u16), Misread> {
     parsed
 }
 
-/// Compares a line with a name, and reads the number after it; 0 without one. Stops at the
-/// first byte that differs: there may be many names, and a frame may be due.
+/// Compares a line with a name, and reads the number of cycles after the name; 0 if there is none.
+/// Stops at the first byte that differs: there may be many names, and a frame may be due.
 #[inline(never)]
 fn match_gait_name(line: &[u8], name: Name) -> Result<u16, Misread> {
     let mut rest = line;
@@ -327,11 +328,11 @@ fn match_gait_name(line: &[u8], name: Name) -> Result<u16, Misread> {
     }
 }
 
-/// Hundredths have this many decimals.
+/// Number of decimals of hundredths.
 const DECIMALS: u8 = 2;
 
-/// Reads a word as a number without its sign; true if the sign is a minus. Returns 65535 for
-/// numbers of more than sixteen bits.
+/// Reads a word as a magnitude and a bool that is true for a minus sign. A magnitude of more than
+/// sixteen bits becomes 65535. Returns `None` if the word does not have this syntax.
 #[inline(never)]
 fn parse_number(word: &[u8], syntax: Syntax) -> Option<(u16, bool)> {
     let (mut sign, mut digits) = (b'+', word);

@@ -77,8 +77,8 @@ impl Console {
         self.rate_finder = RateFinder::new(rate);
     }
 
-    /// Advances the timer of `watch` by a frame, and that of a line which has not ended. Returns
-    /// the rate that the serial line is to have from now on, if it changes.
+    /// Advances the timer of `watch` and the time since the last byte by a frame. Returns the new
+    /// rate of the serial line; `None` if the rate stays.
     pub fn frame(&mut self, control: &Control) -> Option<Rate> {
         self.watch.count_frame();
         self.silence = self.silence.saturating_add(FRAME_MS);
@@ -103,7 +103,7 @@ impl Console {
         self.next_pending(control).is_some()
     }
 
-    /// Takes a byte from the serial line and executes the line that it ends.
+    /// Takes a byte from the serial line; if the byte ends a line of text, executes that line.
     // Not inlined, like the next function: that saves half a kilobyte of flash.
     #[inline(never)]
     pub fn receive(&mut self, byte: u8, control: &mut Control) {
@@ -121,7 +121,7 @@ impl Console {
         self.answer = answer.unwrap_or_else(Some);
     }
 
-    /// Executes the line. Returns no answer while the EEPROM is still being written: then
+    /// Executes the received line. Returns `Ok(None)` if the order has to wait for the EEPROM; then
     /// [`Console::finish_order`] has to follow.
     #[inline(never)]
     fn obey(&mut self, control: &mut Control) -> Result<Option<Answer>, Answer> {
@@ -203,7 +203,7 @@ impl Console {
         out.byte(b'\n');
     }
 
-    /// The output to write next, in a fixed order of priority.
+    /// The output to write next, in a fixed order of priority; `None` if nothing waits.
     const fn next_pending(&self, control: &Control) -> Option<Pending> {
         if !self.has_greeted {
             Some(Pending::Banner)

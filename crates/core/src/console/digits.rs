@@ -51,6 +51,7 @@ pub fn print_number(out: &mut impl Output, value: u32, decimals: usize) {
 }
 
 flash! {
+    /// Powers of ten.
     const DECADES: [u32; 10] = [
         1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000, 1_000_000_000,
     ];
@@ -100,7 +101,7 @@ mod tests {
         text
     }
 
-    /// The expected text, made with the standard library.
+    /// The number as the standard library prints it.
     fn expected(value: u32, decimals: usize) -> String {
         let digits = format!("{value:0>width$}", width = decimals + 1);
         let (whole, rest) = digits.split_at(digits.len() - decimals);

@@ -16,8 +16,9 @@ const WRONG_BYTES: i8 = 4;
 /// sender, must not cut off a robot that is being driven.
 const MORE_AFTER_COMMAND: i8 = 28;
 
-/// Length of the shortest command, in bytes, that is obeyed at a rate that has not carried a command
-/// yet. A shorter one may be misread: some `pose` lines sent at 57 600 baud read as `cal` at 9600.
+/// Length of the shortest command, in bytes, that is obeyed at a rate other than USB's that has not
+/// carried a command yet. A shorter one may be misread: some `pose` lines sent at 57 600 baud read as
+/// `cal` at 9600.
 const MIN_COMMAND_BYTES: usize = 4;
 
 /// The present rate, and the number of wrong bytes received at it.
@@ -44,7 +45,7 @@ impl RateFinder {
         }
     }
 
-    /// Notes a byte. One that is not ASCII counts as wrong, so [`crate::console::line::GARBLED`] does.
+    /// Notes a byte. Every byte that is not ASCII counts as wrong; [`crate::console::line::GARBLED`] is one.
     pub fn note_byte(&mut self, byte: u8) {
         self.has_received = true;
         if !byte.is_ascii() && self.wrong_bytes < WRONG_BYTES {
@@ -69,7 +70,7 @@ impl RateFinder {
     }
 
     /// Ends a frame. If the rate has had too many wrong bytes and nothing came in this frame, changes to
-    /// the next rate and returns it.
+    /// the next rate and returns it; otherwise returns `None`.
     pub fn end_frame(&mut self) -> Option<Rate> {
         let is_pause = !core::mem::take(&mut self.has_received);
         if !is_pause || self.wrong_bytes < WRONG_BYTES {

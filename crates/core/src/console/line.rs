@@ -20,7 +20,7 @@ pub enum Ended {
     Garbled,
 }
 
-/// The byte that a board passes on in place of a garbled one. Like any other that is not ASCII,
+/// The byte that a board passes on in place of a garbled one. Like any other byte that is not ASCII,
 /// it makes its line garbled.
 pub const GARBLED: u8 = 0xff;
 
@@ -44,7 +44,8 @@ impl Line {
         }
     }
 
-    /// Takes a byte. After a line has ended, the next byte begins a new one.
+    /// Takes a byte; the byte after a line end begins a new line. Returns the result of a line end, or
+    /// `None` if the byte is no line end or the line is blank.
     pub fn push(&mut self, byte: u8) -> Option<Ended> {
         if self.has_ended {
             *self = Self::new();
@@ -117,7 +118,7 @@ mod tests {
         ended
     }
 
-    /// The same lines, split by a simpler second implementation.
+    /// Every line that the bytes complete, split by a simpler second implementation.
     fn expected(bytes: &[u8]) -> Vec<Option<String>> {
         let mut lines = Vec::new();
         for line in bytes.split(|byte| matches!(byte, b'\r' | b'\n')) {
@@ -157,7 +158,7 @@ mod tests {
             let first = (length <= 63).then_some(text);
             assert_eq!(ended(bytes.as_bytes()), [first, Some("stand".to_string())]);
         }
-        // Blanks count: after this many, the rest of the line is lost.
+        // Leading blanks count towards the 63 characters.
         assert_eq!(ended(std::format!("{:>64}\r", "stand").as_bytes()), [None]);
     }
 

@@ -1,8 +1,8 @@
 //! The console: lines in, answers out.
 //!
 //! The highest of the core's six folders. It knows bytes, lines and messages, gives
-//! [orders](crate::control::order) to the robot and prints the answers. A board without a serial line needs
-//! none of it.
+//! [orders](crate::control::order) to the robot and prints the answers. A board without a serial line does not
+//! need this module.
 
 pub mod answer;
 pub mod command;

@@ -4,8 +4,8 @@ use core::convert::Infallible;
 
 use ufmt::uWrite;
 
-/// A destination of text: a serial line, or a string on a host. Writing cannot fail, since a serial line waits
-/// for room.
+/// A destination of text: a serial line, or a string on a host. Writing cannot fail: a serial line waits for room
+/// in its buffer.
 pub trait Output {
     /// Writes an ASCII character.
     fn byte(&mut self, byte: u8);

@@ -21,11 +21,11 @@ use crate::numbers::robot::Robot;
 use crate::numbers::section::Damage;
 use crate::numbers::units::{Angle, Sweep, thousandths_from_phase};
 
-/// The longest line of gaits' names, without its line end. A frame may have to wait
-/// until it is written.
+/// The longest line of gait names, in characters without the line end. It is limited since a frame
+/// may have to wait until the line is written.
 pub(super) const LONGEST_NAMES: u8 = 125;
 
-/// The numbers of `cal`'s lines after those of the servos, 0 to 3.
+/// The numbers of `cal`'s last lines; lines 0 to 3 are those of the servos.
 const CAL_BOOT: u8 = 4;
 const CAL_DEADMAN: u8 = 5;
 const CAL_END: u8 = 6;
@@ -149,7 +149,7 @@ fn margin(out: &mut impl Output, motion: &Motion) {
 }
 
 /// Prints ` late=0 rx_lost=0 guard=clear fault=none reset=power resets=0 vcc=5.02 rail=5.91`;
-/// no voltage before the first reading, and the rail only where it is measured.
+/// without voltages before the first reading, and without `rail` if the rail is not measured.
 #[inline(never)]
 fn health(out: &mut impl Output, control: &Control, counters: Counters) {
     digits::print_count(out, Text::StatusLate, counters.late.into());

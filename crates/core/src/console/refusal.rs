@@ -90,6 +90,7 @@ fn print_travel(servo: Servo, motion: &Motion, out: &mut impl Output) {
     print_range(servo, &Reach { min, max }, motion, out)
 }
 
+/// Prints a range of sweeps as two chassis angles, such as `311.41..131.41`.
 fn print_range(servo: Servo, reach: &Reach, motion: &Motion, out: &mut impl Output) {
     let neutral = motion.robot().neutral_of(servo);
     print_hundredths(out, Text::Nothing, neutral.swept(reach.min).centideg());
@@ -219,8 +220,8 @@ mod tests {
             refusal_text(Refusal::Resting),
             "7 servos are resting, send stand first"
         );
-        // The ends of the travel, in whole steps within it: A1 turns 71 deg clockwise of
-        // 132.37 and 83 the other way; the servo of A2 is reversed.
+        // The limits of the travel, rounded inwards to whole steps: A1 turns 71 deg clockwise from
+        // 132.37 deg and 83 deg counter-clockwise; the servo of A2 is reversed.
         for (servo, message) in [
             (Servo::A2, "3 A2 reaches 341.92..135.91"),
             (Servo::A3, "3 A3 reaches 235.64..18.64"),
@@ -280,7 +281,7 @@ mod tests {
                 format!("4 {message}")
             );
         }
-        // Nominal 91 mm on the left and 98 mm on the right, 256 steps each.
+        // The nominal lengths are 91 mm on the left and 98 mm on the right; a millimetre has 256 steps.
         assert_eq!(
             Sample::odd().content.sides.map(|side| side.scale.bits),
             [8, 8]

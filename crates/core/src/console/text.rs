@@ -1,8 +1,8 @@
 //! Every message that the robot prints, kept in flash.
 //!
 //! A string literal of an AVR program is copied to its 2 KiB of RAM at start. The messages here stay in flash
-//! and are packed: a character has a code of four or eight bits, and so has a phrase that several messages
-//! share. A message is unpacked while it is printed.
+//! and are packed: a frequent character has a code of four bits, any other character, or a phrase that several
+//! messages share, has one of eight. A message is unpacked while it is printed.
 
 use lizard_avr::flash;
 
@@ -155,7 +155,8 @@ texts! {
     NothingSaved = "nothing is saved that could be loaded";
 }
 
-/// Phrases that occur in several messages, stored once.
+/// Phrases that occur in several messages, stored once. The longest come first, since the first phrase that
+/// matches is used.
 const PHRASES: &[&str] = &[
     " wants a servo 1..4 and ",
     ", robot.toml's is in use",
@@ -191,8 +192,7 @@ const PHRASES: &[&str] = &[
 /// Every character of the messages, the most frequent first.
 const ALPHABET: &[u8; 45] = b" eotsarnldipmgcw0uh.=fb:vk1y2-,x6#z?_3+54'789";
 
-/// The number of characters with a code of four bits; no longer code begins with one of
-/// these.
+/// The number of characters with a code of four bits; the four-bit values that remain begin the codes of eight bits.
 const SHORT_CODES: u8 = 12;
 
 const COUNT: usize = MESSAGES.len();
@@ -200,7 +200,7 @@ const COUNT: usize = MESSAGES.len();
 /// The number of packed strings: the messages first, then the phrases.
 const STRINGS: usize = COUNT + PHRASES.len();
 
-/// Number of strings in a block. Stored are only the start of each block and the length of each string.
+/// Number of strings in a block. Only the start of each block and the length of each string are stored.
 const BLOCK_STRINGS: usize = 16;
 
 const PACKED: Packed = pack();
@@ -307,7 +307,7 @@ impl Packed {
         self.count += 1;
     }
 
-    /// Appends a character's code, or a phrase's after those of all characters.
+    /// Appends the code of a character or of a phrase; the codes of phrases follow those of all characters.
     const fn append(&mut self, code: usize) {
         assert!(code < SHORT_CODES as usize + (16 - SHORT_CODES as usize) * 16);
         let code = code as u8;
@@ -361,7 +361,7 @@ const fn pack() -> Packed {
     packed
 }
 
-/// The first phrase that a text begins with, and the rest of the text.
+/// The first phrase that a text begins with, and the rest of the text; `None` if it begins with no phrase.
 const fn phrase_of(text: &[u8]) -> Option<(usize, &[u8])> {
     let mut phrase = 0;
     while phrase < PHRASES.len() {

@@ -1,4 +1,4 @@
-//! The words of the console.
+//! The command words of the console.
 
 use lizard_avr::flash;
 
@@ -17,9 +17,9 @@ pub enum Effect {
     Freezes,
     /// The pulses end.
     Rests,
-    /// A gait goes faster or slower.
+    /// The speed of gaits changes.
     Paces,
-    /// A servo's calibration changes: the pulses of a pose, or the travel.
+    /// A servo's calibration changes: its pulse for an angle, or its travel.
     Calibrates,
 }
 
@@ -135,8 +135,8 @@ impl Word {
         (self as usize) < RESERVED
     }
 
-    /// Prints all words, with bars in between. A word whose number is `YIELDING` or more is
-    /// left out if the robot has a gait of the same name.
+    /// Prints all words, with bars in between. Leaves out a word if its number is `YIELDING` or more and
+    /// the robot has a gait of the same name.
     pub(crate) fn print_all<const YIELDING: usize>(out: &mut impl Output, robot: &Robot) {
         let mut number = 0;
         let mut is_printed = true;

@@ -9,10 +9,11 @@
 
 use crate::numbers::gaits::Input;
 
-/// The levels of the last three frames, the latest in bit 0; a closed contact is 1.
+/// The bits with the levels of the last three frames, the latest in bit 0; a closed contact is 1.
 const LEVELS: u8 = 0b111;
 
-/// The bit that is set once the contact may end the step.
+/// The bit that is set once the contact has been open for three frames, or need not be: only then may it end the
+/// step.
 const READY: u8 = 0b1000;
 
 /// The contact that is awaited, and its levels in the last frames.
@@ -24,7 +25,7 @@ pub struct Contact {
 }
 
 impl Contact {
-    /// No contact: none of its frames ends a step.
+    /// No contact; it never ends a step as long as its level is open.
     pub const NONE: Self = Self {
         input: Input::NONE,
         history: 0,
@@ -61,7 +62,7 @@ mod tests {
 
     use super::*;
 
-    /// The frames in which a contact counts as closed, for these levels; `#` is a closed one.
+    /// The frames in which a contact counts as closed; in `levels`, `#` is a frame with a closed contact.
     fn closes(mut contact: Contact, levels: &str) -> Vec<usize> {
         let frames = levels.bytes().enumerate();
         let closed = frames.filter(|(_, level)| contact.frame(*level == b'#'));

@@ -55,9 +55,10 @@ pub struct Control {
     cause: Cause,
     /// Resets since power-on.
     restarts: u8,
-    /// True if a weak supply is the only possible cause of the reset.
+    /// True if a weak supply may have caused the last reset; false again once a command has shown that a computer
+    /// opened the port.
     may_be_supply: bool,
-    /// Consecutive resets that a weak supply may have caused.
+    /// Consecutive resets, including the last one, that a weak supply may have caused.
     brown_outs: u8,
     /// True if a command has come since the start.
     has_heard_command: bool,
@@ -217,7 +218,7 @@ impl Control {
         self.has_heard_command = true;
     }
 
-    /// Takes the reason why the guard holds the robot; the next call returns `None`.
+    /// Takes the reason why the guard holds the robot; `None` if there is none or it was taken before.
     pub fn take_hold_reason(&mut self) -> Option<Hazard> {
         self.hold_reason.take()
     }
@@ -232,7 +233,7 @@ impl Control {
         self.safety.note_printed(notice);
     }
 
-    /// The voltage of the supply that restricts the robot more.
+    /// The voltage of the supply, the chip's or the servos' rail, that restricts the robot more.
     #[inline(never)]
     pub fn voltage(&self) -> Voltage {
         self.safety.supply().worst(&self.motion.robot().supplies())
@@ -362,7 +363,7 @@ impl Control {
         Ok(Accepted::Done)
     }
 
-    /// Looks the order up in the supervisor's table; false if there is nothing to do.
+    /// Looks the order up in the supervisor's table; true if it is to be obeyed, false if there is nothing to do.
     ///
     /// # Errors
     /// Returns the reason of the refusal.

@@ -16,15 +16,15 @@ pub enum Fault {
     Link,
     /// The program hung and was restarted.
     Watchdog,
-    /// An edge of a pulse came late: a rising edge was not made, so its pulse is
-    /// missing; a falling edge made its pulse longer.
+    /// An edge of a pulse came late. A late rising edge is left out, so its pulse is
+    /// missing; a late falling edge makes its pulse longer.
     Late,
     /// The stack has grown into the data.
     Stack,
     /// Several resets in a row by a weak supply or, where a boot loader hides the cause, by the
     /// button.
     BrownOut,
-    /// There is no robot in the flash.
+    /// The flash holds no usable robot.
     Robot,
 }
 
@@ -35,7 +35,7 @@ impl Fault {
     }
 }
 
-/// Frames for which a flash is lit, and for which it is dark after that.
+/// Frames for which a flash is lit, and frames for which the LED is dark after it.
 const FLASH: u8 = 8;
 
 /// Frames of the pause after the flashes.
@@ -97,7 +97,7 @@ mod tests {
         Fault::Robot,
     ];
 
-    /// The lengths of the LED's lit and dark runs over some frames.
+    /// The LED's lit and dark runs over some frames: true for a lit one, and its length.
     fn runs(led: &mut Led, fault: Option<Fault>, frames: usize) -> Vec<(bool, usize)> {
         let mut runs: Vec<(bool, usize)> = Vec::new();
         for _ in 0..frames {

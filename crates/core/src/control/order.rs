@@ -37,13 +37,13 @@ pub enum Order {
 /// A setting of a servo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Setting {
-    /// The correction of the horn's angle, at most 20 deg either way.
+    /// The correction of the horn's angle, at most 20 deg in either direction.
     Trim(Sweep),
     /// True if a longer pulse turns the servo counter-clockwise.
     Direct(bool),
     /// Hundredths of a microsecond per degree, 500..=2000.
     Scale(u16),
-    /// The ends of the travel as chassis angles, clockwise end first.
+    /// The limits of the travel as chassis angles, the clockwise limit first.
     Limit(Angle, Angle),
 }
 

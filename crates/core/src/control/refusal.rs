@@ -20,6 +20,6 @@ pub enum Refusal {
     NotKept,
     /// The EEPROM holds no settings that could be loaded.
     NothingSaved,
-    /// There is no robot in the flash.
+    /// The flash holds no usable robot.
     NoRobot,
 }

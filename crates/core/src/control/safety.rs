@@ -36,7 +36,7 @@ impl Default for Health {
     }
 }
 
-/// The action that a frame requires; of several, the last of this list counts.
+/// The action that a frame requires; of several actions, the last one in this list counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Reaction {
     /// No action.
@@ -164,8 +164,8 @@ impl Safety {
         supervisor::response(event, self.supply.measured(), state)
     }
 
-    /// Checks a frame's health. A gait ends after `deadman` milliseconds without a command (0: never), and no
-    /// sooner.
+    /// Checks a frame's health and returns the reaction. A gait ends after `deadman` milliseconds without a command
+    /// (0: never), and no sooner.
     pub fn frame(
         &mut self,
         health: &Health,
@@ -185,7 +185,7 @@ impl Safety {
                 reaction = Reaction::Boot;
             }
         }
-        // The last command came at some time within the first of these frames.
+        // The last command may have come at the end of the first frame counted, so that frame is subtracted.
         if deadman != 0 && self.silence.saturating_sub(FRAME_MS) >= deadman {
             reaction = reaction.max(self.handle(Event::Silence, state));
         }

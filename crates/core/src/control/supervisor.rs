@@ -1,8 +1,8 @@
-//! The supervisor: one table with the reaction to every event in every state.
+//! The supervisor: a table with the reaction to every event in every state, and a table of resets.
 //!
 //! A person sends a command, the supply falls, the line breaks, the program hangs, and
-//! any two of these may happen in the same frame. So the reactions are in one table, and
-//! all other code looks them up here. docs/faults.md prints the same tables.
+//! any two of these may happen in the same frame. So all reactions are in the table of events,
+//! and all other code looks them up there. docs/faults.md prints both tables.
 
 use crate::control::fault::Fault;
 use crate::control::supply::Level;
@@ -24,7 +24,7 @@ pub enum State {
 pub enum Event {
     /// The command `stand`.
     Stand,
-    /// The command of any other motion.
+    /// The command of a motion other than `stand`.
     Move,
     /// The command `stop`.
     Stop,
@@ -96,7 +96,7 @@ pub const fn response(event: Event, supply: Option<Level>, state: State) -> Resp
     use Event::{Boot, Empty, LateEdge, Move, Rest, Save, Silence, Stack, Stand, Stop, TooLow, Unsafe};
     use Response::{EndPulses, Freeze, Nothing, Obey, RefuseResting, RefuseSupply};
     let enough_to_move = matches!(supply, None | Some(Level::Good | Level::Slow));
-    // Before the first measurement an order to write is accepted; the write waits for it.
+    // Before the first measurement an order to write is accepted; the write waits for the measurement.
     let enough_to_write = matches!(supply, None | Some(Level::Good));
     let [resting, still, walking] = match event {
         // what happens              resting                  still                    walking
@@ -142,12 +142,12 @@ pub enum ServosBefore {
 /// The robot's first action after a reset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FirstAction {
-    /// The servos wake one after the other in the pose of the last `rest`, if the
-    /// memory holds one, or else in the neutral one; then the robot stands.
+    /// The servos wake one after the other, in the pose of the last `rest` if the memory
+    /// holds one, otherwise in the neutral pose; then the robot stands.
     Wake,
-    /// The servos wake one after the other with the pulses that they had; then the robot stands.
+    /// The servos wake one after the other with their pulses from before the reset; then the robot stands.
     TakeOver,
-    /// The servos are held with the pulses that they had, all at once.
+    /// All servos are held at once, with their pulses from before the reset.
     Hold,
     /// The servos get no pulses.
     Rest,
@@ -159,7 +159,7 @@ impl ServosBefore {
 }
 
 /// The table of resets: the first action and the fault that is shown, given the cause, the
-/// consecutive resets that a weak supply may have caused, and the servos' state before.
+/// consecutive resets that a weak supply may have caused, and the servos' state before the reset.
 #[rustfmt::skip]
 pub const fn first_action(cause: Cause, brown_outs: u8, before: ServosBefore) -> (FirstAction, Option<Fault>) {
     use FirstAction::{Hold, Rest, TakeOver, Wake};

@@ -1,7 +1,7 @@
 //! The supply's voltage: measured every frame, and turned into a level that limits the robot.
 //!
-//! Four servos that start at once pull a weak supply down; below 2.7 V the chip resets,
-//! and well above that a servo loses its position and an EEPROM write its data. The chip
+//! Four servos that start at once pull a weak supply down. Below 2.7 V the chip resets; at well
+//! above 2.7 V a servo already loses its position and an EEPROM write its data. The chip
 //! can measure its own supply without any external part: it compares the supply with a
 //! reference of about 1.1 V on the chip. The servos' own rail can be measured if a
 //! divider connects it to an analogue pin.
@@ -17,12 +17,12 @@ use crate::numbers::supplies::{Supplies, Thresholds};
 /// Steps of the analogue converter.
 const FULL_SCALE: u16 = 1024;
 
-/// A reading of the converter, 0..=1023; 0 stands for nothing measured yet.
+/// Readings of the analogue converter, each 0..=1023; 0 before the first measurement.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Reading {
-    /// The reference, in parts of the supply.
+    /// The chip's reference voltage, in 1/1024 of the supply.
     pub reference: u16,
-    /// The divided rail of the servos, in parts of the supply.
+    /// The voltage of the servos' rail after its divider, in 1/1024 of the supply.
     pub rail: u16,
 }
 
@@ -34,7 +34,7 @@ pub enum Level {
     Good,
     /// Gaits are limited to [`slow_pace`](crate::numbers::robot::Robot::slow_pace), and the EEPROM is not written.
     Slow,
-    /// The robot may stand still only.
+    /// The robot may only stand still.
     Stop,
     /// The servos get no pulses.
     Rest,
@@ -55,20 +55,20 @@ pub struct Supply {
     level: Level,
     /// Consecutive frames that have measured another level.
     frames_at_other_level: u8,
-    /// The level nearest to the present one in those frames.
+    /// The level nearest to the present one in the frames of `frames_at_other_level`.
     nearest: Level,
-    /// Number of readings so far, up to [`TO_WORSE`].
+    /// Number of readings so far, up to [`FRAMES_TO_WORSE`].
     readings: u8,
 }
 
 /// Frames for which a worse level must last before it counts: a servo's start pulls the
-/// supply down for a few milliseconds. A reading stands for up to four frames, if the rail
-/// is measured too, so a single dip changes nothing.
+/// supply down for a few milliseconds. If the rail is measured too, up to four frames share
+/// a reading, so a single dip changes nothing.
 const FRAMES_TO_WORSE: u8 = 6;
 
-/// Frames for which a better level must last: a second, at a voltage above the threshold by
-/// [`HYSTERESIS`], mV.
+/// Frames for which a better level must last before it counts: a second.
 const TO_BETTER: u8 = 50;
+/// Voltage above a threshold that a better level needs, mV.
 const HYSTERESIS: u16 = 150;
 
 impl Voltage {
@@ -107,7 +107,7 @@ impl Voltage {
 const MAX_HUNDREDTHS: u16 = (1 << 13) - 1;
 
 impl Thresholds {
-    /// The level of a voltage, with thresholds raised by `above`, mV.
+    /// The level of a voltage, with the thresholds raised by `above`, mV.
     fn level(&self, voltage: Voltage, above: u16) -> Level {
         if !voltage.is_below(self.slow.wrapping_add(above)) {
             Level::Good
@@ -122,7 +122,7 @@ impl Thresholds {
 }
 
 impl Supplies {
-    /// The worse level of both supplies.
+    /// The level of the chip's supply or of the rail, whichever is worse.
     fn level(&self, reading: Reading, above: u16) -> Level {
         let board = self.board.level(Voltage::of_board(reading, self), above);
         if self.rail_reference == 0 {
@@ -163,7 +163,7 @@ impl Supply {
         self.frames_at_other_level == 0
     }
 
-    /// The present level, once enough frames have measured it; until then it is assumed.
+    /// The present level; `None` until enough frames have measured it.
     pub const fn measured(&self) -> Option<Level> {
         if self.readings < FRAMES_TO_WORSE {
             None
@@ -172,7 +172,7 @@ impl Supply {
         }
     }
 
-    /// The voltage of the supply that restricts the robot more.
+    /// The voltage of the chip's supply or of the rail, whichever restricts the robot more.
     pub fn worst(&self, supplies: &Supplies) -> Voltage {
         let board = Voltage::of_board(self.reading, supplies);
         let rail = Voltage::of_rail(self.reading, supplies);

@@ -1,13 +1,13 @@
 //! The largest difference between integer and floating-point results: proved, not measured.
 //!
 //! Each bound here adds up all roundings of one number, in the order in which they happen, each at its worst.
-//! Nothing in it is measured except the sines of [`crate::guard::trig`], which a test there compares at every
-//! angle. A test that finds an error beyond its bound has found a mistake in the code or in this derivation;
+//! Nothing in it is measured except the sines of [`crate::guard::trig`], which a test of that module compares at
+//! every angle. A test that finds an error beyond its bound has found a mistake in the code or in this derivation;
 //! chance is no explanation.
 //!
-//! Lengths of an end are counted in `U`, two steps of its bars, like the distance of the crank tips. `k` is the
-//! vector from the left crank tip to the right one, `s = k^2`, `a` and `b` are the couplers, `R = (a + b)^2`,
-//! `N = (a - b)^2`. A prime, as in `k'`, marks the integer result for a true value.
+//! Lengths of a five-bar (head or tail) are counted in `U`, two steps of its bars, like the distance of the crank
+//! tips. `k` is the vector from the left crank tip to the right one, `s = k^2`, `a` and `b` are the couplers,
+//! `R = (a + b)^2`, `N = (a - b)^2`. A prime, as in `k'`, marks the integer result for a true value.
 //!
 //! **1. Crank tips.** Base and cranks are rounded to a step, 1/4 U each. Half the base
 //! loses 1/2 U, the rounded sum of the products 1/2 U, and a direction is off by
@@ -90,14 +90,14 @@ pub const KNOWN: f64 = 0.08;
 /// of 16 bits; and the quarter that `R` and `N` lose when they are rounded down to whole steps.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LeanError {
-    /// The error of the rise, as a number.
+    /// The largest error of the rise, which has no unit.
     pub rise: f64,
-    /// The error of the skew, as a number.
+    /// The largest error of the skew, which has no unit.
     pub skew: f64,
 }
 
 impl LeanError {
-    /// The error for couplers of whole steps, with the tips' squared distance, U^2, in a range.
+    /// The error for couplers in whole steps, over a range of the squared distance of the crank tips, U^2.
     pub fn of(left: i16, right: i16, [low, high]: [f64; 2]) -> Self {
         let (a, b) = (f64::from(left) / 2.0, f64::from(right) / 2.0);
         let reach = (a + b).powi(2).floor();
@@ -167,13 +167,13 @@ struct Factor {
 struct Product([Factor; 3]);
 
 impl Product {
-    /// The largest `|t^2 f''|` and the largest value in a range of `t` with a step on
-    /// either side, of which none is below `first`.
+    /// The largest `|t^2 f''|` and the largest value, over a range of `t` that is extended by a
+    /// step on either side, but not below `first`.
     fn bend(&self, [low, high]: [f64; 2], first: f64) -> [f64; 2] {
         let ends = [(low * 16.0 / 17.0).max(first), high * 17.0 / 16.0];
         let (mut sum, mut squares, mut top) = ([0.0; 2], [0.0; 2], 1.0f64);
         for Factor { power, p, q } in self.0 {
-            // Rounding may not make it 0 or negative at an end of the range.
+            // Keeps rounding from making the line 0 or negative at a limit of the range.
             let line = ends.map(|t| (p + q * t).max(1e-9));
             let mut l = [q * ends[0] / line[0], q * ends[1] / line[1]];
             l.sort_by(f64::total_cmp);
@@ -200,19 +200,20 @@ impl Product {
     }
 }
 
-/// The rounded numbers of an end, on which its errors depend besides its true bars.
+/// The rounded numbers of a five-bar, on which its errors depend besides its true bars.
 #[derive(Clone, Copy, Debug)]
 pub struct Bars {
-    /// The scale of the end's lengths.
+    /// The scale of the five-bar's lengths.
     pub scale: Scale,
     /// The left and the right coupler in whole steps.
     pub couplers: [i16; 2],
 }
 
-/// The errors of an end's margins, at a pair of crank angles or at any of a range.
+/// The largest errors of the margins of a five-bar (head or tail), at one pair of crank angles or over a range of
+/// them.
 #[derive(Clone, Copy, Debug)]
 pub struct End {
-    /// The error of the type-2 margin's size, a sine.
+    /// The error of the type-2 margin's magnitude, a sine.
     pub type2: f64,
     /// The error of the left crank's type-1 margin, a sine.
     pub type1_left: f64,
@@ -220,14 +221,14 @@ pub struct End {
     pub type1_right: f64,
     /// The error of the crank tips' distance along the base, mm.
     pub along: f64,
-    /// The smallest true type-2 margin of the range, a sine; 0 if some loop in it does not close.
+    /// The smallest true type-2 margin in the range, a sine; 0 if the loop does not close everywhere in the range.
     pub least: f64,
     /// True if the tables have a value at every true type-2 margin of the range.
     pub is_known: bool,
 }
 
 impl End {
-    /// The errors for true bars, the integers made of them, and crank angles in the frame of the end, deg. If
+    /// The errors for true bars, the integers made of them, and crank angles in the five-bar's own frame, deg. If
     /// the loop does not close, `type2` is the largest margin that the integers may compute.
     pub fn of(bars: &kinematics::FiveBar, integers: impl Into<Bars>, angles: [f64; 2]) -> Self {
         let [left, right] = angles.map(Vector::direction);
@@ -351,7 +352,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(4000))]
 
         /// Tests in [`crate::guard::clearance`] and [`crate::guard::five_bar`] check the bound of a single
-        /// pair.
+        /// pair of angles.
         #[test]
         fn a_bound_over_a_range_holds_at_every_pair_of_angles_in_it(
             (robot, pose) in Sample::random().prop_flat_map(|robot| {
@@ -360,7 +361,8 @@ mod tests {
             }),
             below in 0.0..1.0f64,
             above in 0.0..1.0f64,
-            // From nearly nothing to more than the crank tips move within a cell.
+            // Decimal logarithm of the range's width in mm: from nearly nothing to more than the crank tips
+            // move within a cell.
             width in -4.0..0.7f64,
         ) {
             let [a1, a2, ..] = robot.degrees(&pose);

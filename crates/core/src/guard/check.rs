@@ -4,8 +4,8 @@
 //! of every gait. So the device trusts the numbers, except those that reach the hardware: a pin that is the
 //! serial line's or the LED's, a pulse that a servo does not tolerate, a neutral pose in which the linkage
 //! would jam as soon as the servos wake. Any other number can make the robot walk badly, but cannot do more
-//! harm: every address of flash can be read, every index is checked where it is used, and each pulse ends at
-//! its servo's travel.
+//! harm: every address of flash can be read, every index is checked where it is used, and each pulse stays
+//! within its servo's travel.
 
 use core::mem::offset_of;
 
@@ -20,10 +20,10 @@ use crate::numbers::robot::Robot;
 use crate::numbers::section::{self, Damage, NUMBERS, Numbers};
 use crate::numbers::units::{CYCLES_PER_US, Sweep};
 
-/// The shortest and the longest pulse of a hobby servo, cycles, with one of rounding.
+/// The shortest and the longest pulse of a hobby servo, CPU cycles, with a cycle of tolerance for rounding.
 const PULSES: [u16; 2] = [500 * CYCLES_PER_US - 1, 2500 * CYCLES_PER_US + 1];
 
-/// True for a pin that is neither the serial line's nor the LED's, D2 to D12 and A0 to A5.
+/// True for a pin other than those of the serial line and the LED: D2 to D12 and A0 to A5.
 const fn is_free(pin: u8) -> bool {
     pin.wrapping_sub(2) < 18 && pin != 13
 }
@@ -64,7 +64,7 @@ impl<'a> Robot<'a> {
         self.section().read(offset)
     }
 
-    /// True if all pins are free ones of the board, each used once, and the rail's, if any, can measure.
+    /// True if each servo has a free pin of the board to itself, and the rail's pin, if any, is an analogue input.
     #[inline(always)]
     fn has_pins(&self) -> bool {
         let rail = self.read_word(offset!(rail)) as u8;
@@ -91,8 +91,8 @@ impl<'a> Robot<'a> {
         users
     }
 
-    /// The input of a record of the kind [`Step::UNTIL`]; [`Input::NONE`] if its pin is not free,
-    /// since its pull-up would drive a servo.
+    /// The input of a record of the kind [`Step::UNTIL`]; [`Input::NONE`] if its pin is not free, or is
+    /// used by a servo or the rail, since the pull-up would act on it.
     pub(crate) fn input(&self, step: &Step) -> Input {
         let input = Input::of_step(step);
         match is_free(input.pin()) && self.count_users(input.pin()) == 0 {
@@ -101,7 +101,8 @@ impl<'a> Robot<'a> {
         }
     }
 
-    /// True if every servo reaches what the gaits need with pulses that a servo tolerates.
+    /// True if every servo's travel contains the neutral angle and all sweeps that the gaits need, and has
+    /// only pulses that a servo tolerates.
     #[inline(always)]
     fn has_servos(&self) -> bool {
         let mut servo = 0;

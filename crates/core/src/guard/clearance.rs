@@ -2,7 +2,7 @@
 //!
 //! Every frame passes the guard before it reaches a servo, whether it comes from a gait, a point-to-point move
 //! or a typed pose. The guard tests the pose itself, for any pose within the servos' travel; it does not
-//! approximate the safe poses by a box. It is the same for head and tail, because in its own frame the tail is
+//! approximate the safe poses by a box. Head and tail share its code, because in its own frame the tail is
 //! built like the head.
 //!
 //! Every condition depends on one servo or on two, so `make prove` can compare all poses
@@ -18,7 +18,7 @@ use crate::numbers::robot::Robot;
 use crate::numbers::root::root;
 use crate::numbers::units::Sine;
 
-/// The ten margins in the order in which they are checked.
+/// The number of margins of a pose.
 const MARGINS: usize = 10;
 
 /// The indices of the first type-1 margin and of the first leg margin.
@@ -26,6 +26,7 @@ const TYPE1: usize = 2;
 const LEGS: usize = 6;
 
 flash! {
+    /// The margins in the order in which they are checked.
     const ORDER: [Margin; MARGINS] = [
         Margin::Type2(End::Head),
         Margin::Type2(End::Tail),
@@ -40,8 +41,8 @@ flash! {
     ];
 }
 
-/// Returns the first limit that a pose breaks. A pose in certified cells is not measured:
-/// all their poses were proved safe when the section was made.
+/// Returns the first limit that a pose breaks; `None` if it breaks none. A pose in certified cells is
+/// not measured: all poses in them were proved safe when the section was made.
 #[inline(never)]
 pub fn hazard(robot: &Robot, pose: &Pose) -> Option<Hazard> {
     if robot.is_certified(pose) {
@@ -53,11 +54,11 @@ pub fn hazard(robot: &Robot, pose: &Pose) -> Option<Hazard> {
 /// Every margin of one pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Clearance {
-    /// Type-2 of head and tail; type-1 of A1 to A4; legs of A1 to A4: sin theta_lg in the frame of its end,
-    /// which is negative beyond a change point (0, 180 deg), where the parallelogram may have flipped to its
-    /// crossed form.
+    /// The type-2 margins of head and tail, the type-1 margins of A1 to A4, and the leg margins of A1 to A4. A leg
+    /// margin is sin theta_lg in the frame of the leg's five-bar; it is negative beyond a change point (0, 180 deg),
+    /// where the parallelogram may have flipped to its crossed form.
     pub margins: [Sine; MARGINS],
-    /// The sliders' squared lengths, left and right, in their steps.
+    /// The squared lengths of the left and the right slider, each in squared steps of its own scale.
     pub sliders_sq: [u32; 2],
 }
 
@@ -92,6 +93,7 @@ impl Clearance {
         clearance
     }
 
+    /// Measures the margins of the five-bar of head or tail.
     // Not inlined, like `length_sq`: the compiler would unroll a loop over two.
     #[inline(never)]
     fn measure_end(&mut self, robot: &Robot, end: End, cranks: &[Direction; 4]) {
@@ -111,7 +113,8 @@ impl Clearance {
         smallest
     }
 
-    /// The first limit that this pose breaks: margins, then strokes left and right.
+    /// The first limit that this pose breaks: margins first, then the strokes left and right. `None` if it breaks
+    /// none.
     #[inline(never)]
     pub fn hazard(&self, robot: &Robot) -> Option<Hazard> {
         let limits = robot.limits();

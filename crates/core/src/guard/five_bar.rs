@@ -1,6 +1,6 @@
 //! The distance of a five-bar linkage from its singularities, in integers.
 //!
-//! Two cranks hold the ends of two couplers whose common joint is the end point, the head
+//! Two cranks carry two couplers, whose common joint is the end point, the head
 //! or the tail. If the couplers line up, the end point can move although both servos
 //! hold: a type-2 singularity. If a crank lines up with its coupler, the elbow can change
 //! to its other working mode: type 1. The margins are the sines of the angles between the
@@ -30,14 +30,14 @@ use crate::numbers::part::End;
 use crate::numbers::robot::Robot;
 use crate::numbers::units::Sine;
 
-/// One loop: its bars and the curves of its couplers.
+/// A five-bar linkage: its bars and the tables of its couplers.
 #[derive(Clone, Copy, Debug)]
 pub struct FiveBar<'a> {
     bars: Bars,
     tables: Tables<'a>,
 }
 
-/// The margins of one end.
+/// The margins of the five-bar of head or tail.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EndMargins {
     /// sin(theta3 - theta2). Negative where the crank tips have crossed, beyond the
@@ -45,7 +45,7 @@ pub struct EndMargins {
     pub type2: Sine,
     /// sin(theta1 - theta2), negative for an elbow bent inwards.
     pub type1_left: Sine,
-    /// sin(theta3 - theta4), likewise.
+    /// sin(theta3 - theta4), negative for an elbow bent inwards.
     pub type1_right: Sine,
 }
 
@@ -95,7 +95,7 @@ impl<'a> FiveBar<'a> {
 }
 
 impl<'a> Robot<'a> {
-    /// The five-bar of an end, in that end's own frame.
+    /// The five-bar of head or tail, in its own frame.
     pub fn end(&self, end: End) -> FiveBar<'a> {
         FiveBar::new(self.bars(end), self.tables(end))
     }
@@ -109,8 +109,8 @@ struct Tips {
 }
 
 impl Tips {
-    /// The type-1 margin of a crank: `(1 + skew) cross + rise dot` over twice its
-    /// coupler.
+    /// The type-1 margin of a crank: `(1 + skew) cross + rise dot` over twice the length of
+    /// its coupler.
     #[inline(never)]
     fn elbow(self, crank: &Direction, rise: i16, skew: i16, per_coupler: i16) -> Sine {
         let cross = upper((mul(self.along, crank.sin) - mul(self.across, crank.cos)) << 1);

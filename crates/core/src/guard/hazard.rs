@@ -1,4 +1,4 @@
-//! Hazards: the limit that a pose breaks, and by how much.
+//! Hazards: the limit that a pose breaks, and the value that breaks it.
 
 use crate::numbers::part::{End, Servo, Side};
 use crate::numbers::units::Sine;
@@ -8,7 +8,7 @@ use crate::numbers::units::Sine;
 // Starts at 3, since the absence of a hazard has to be zero: see `Main::new`.
 #[repr(u8)]
 pub enum Margin {
-    /// The margin between the two couplers of an end.
+    /// The margin between the two couplers of head or tail.
     Type2(End) = 3,
     /// The margin between the crank on a servo and its coupler, negative where the elbow is bent inwards.
     Type1(Servo),
@@ -17,8 +17,8 @@ pub enum Margin {
 }
 
 impl Margin {
-    /// True if the value was measured. If an end's couplers are nearly in line, or do not meet,
-    /// the guard knows only that the type-2 margin is below a tenth. See
+    /// True if the value was measured. If two couplers are nearly in line, or cannot be joined,
+    /// the guard knows only that their type-2 margin is below a tenth. See
     /// [`crate::guard::five_bar::FiveBar::margins`].
     pub fn is_known(self, value: Sine) -> bool {
         !matches!(self, Self::Type2(_)) || value != Sine(0)

@@ -12,7 +12,7 @@ use crate::guard::trig::Direction;
 use crate::numbers::slider::Slider;
 
 impl Slider {
-    /// The right side mirrored to a left one.
+    /// The slider mirrored in the y axis of the chassis: a right one as a left one.
     pub const fn mirrored(self) -> Self {
         Self {
             offset: self.offset.wrapping_neg(),
@@ -23,8 +23,8 @@ impl Slider {
     /// The slider's squared length in steps, with the front crank and the rear
     /// one (in the tail's own frame) in these directions.
     ///
-    /// Written for the left side, where the front arm leads its crank by a
-    /// right angle; the right side is its mirror image.
+    /// Valid for the left side, where the front arm is a right angle ahead of its crank,
+    /// counter-clockwise; the right side has to be mirrored first.
     #[inline(never)]
     pub fn length_sq(&self, front: &Direction, rear: &Direction) -> u32 {
         let aside = upper((mul(self.rear, rear.sin) - mul(self.front, front.sin)) << 1);
@@ -44,7 +44,7 @@ mod tests {
     use crate::numbers::units::Angle;
     use crate::sample::{bounds, degrees, per_mm, side_of};
 
-    /// A side of any robot that hobby servos move, mm.
+    /// The slider of any robot that hobby servos move, mm.
     fn sides() -> impl Strategy<Value = kinematics::Slider> {
         (
             1.0..300.0f64,

@@ -52,9 +52,10 @@ impl Direction {
     }
 }
 
+/// The number of steps in the table.
 const STEPS: usize = 128;
 
-/// The sine over the first quarter, `across` in 0..=0x4000.
+/// The sine of an angle in the first quarter turn, 0..=0x4000.
 fn quarter(across: u16) -> i16 {
     let index = usize::from(across >> 7);
     let entry = QUARTER.at(index).load();
@@ -70,7 +71,7 @@ flash! {
     const QUARTER: [i16; STEPS + 1] = quarter_wave();
 }
 
-/// The table, computed at compile time: no float reaches the microcontroller.
+/// The table of a quarter wave, computed at compile time: no float reaches the microcontroller.
 const fn quarter_wave() -> [i16; STEPS + 1] {
     let mut table = [0; STEPS + 1];
     let mut k = 0;

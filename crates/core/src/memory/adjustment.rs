@@ -18,14 +18,14 @@ pub struct Adjustment {
     pub trim: Sweep,
     /// The servo's gain, as [`Calibration::gain`].
     pub gain: i16,
-    /// The travel's clockwise end.
+    /// The clockwise limit of the travel.
     pub min: Sweep,
-    /// The travel's counter-clockwise end.
+    /// The counter-clockwise limit of the travel.
     pub max: Sweep,
 }
 
 impl Adjustment {
-    /// The adjustment that leaves a servo as robot.toml has it.
+    /// The adjustment that leaves a servo as robot.toml defines it.
     pub const fn of(factory: &Calibration) -> Self {
         Self {
             trim: Sweep(0),
@@ -43,7 +43,7 @@ impl Adjustment {
         let mut servo = Calibration {
             neutral: factory.neutral,
             gain: self.gain,
-            // Without even the neutral angle the travel is empty.
+            // An empty travel, for a trim that puts even the neutral angle outside of the allowed pulses.
             min: Sweep(1),
             max: Sweep(-1),
         };
@@ -86,8 +86,8 @@ impl Adjustment {
     }
 }
 
-/// The end of a travel towards `end`: that sweep, or the last one before it whose pulse is between the shortest
-/// and the longest. The neutral pulse must be between them.
+/// Limits a sweep to the pulses between the shortest and the longest: returns the sweep itself, or the last one on
+/// the path to it from neutral whose pulse is allowed. The neutral pulse must be allowed.
 #[inline(never)]
 fn farthest(servo: &Calibration, end: Sweep, [shortest, longest]: [u16; 2]) -> Sweep {
     let neutral = servo.neutral.0;

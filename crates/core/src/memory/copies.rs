@@ -36,7 +36,7 @@ pub enum Outcome {
     OneCopy,
     /// No copy is valid.
     Damaged,
-    /// The settings are for other servos, or of another firmware.
+    /// The settings are for other servos, or in the format of another firmware.
     Foreign,
     /// With these settings some gait would leave a servo's travel.
     Unfit,
@@ -46,7 +46,7 @@ pub enum Outcome {
 struct Copies {
     /// The result of checking each copy.
     states: [RecordState; 2],
-    /// The number of the copy that was saved last, if any is valid.
+    /// The number of the copy that was saved last; without meaning if no copy is valid.
     latest: usize,
 }
 
@@ -74,7 +74,8 @@ impl Copies {
     }
 }
 
-/// Reads the settings saved last into `settings`, and returns their state.
+/// Reads the settings saved last into `settings`, and returns their state. Without a valid copy, `settings` stay
+/// as they are.
 #[inline(never)]
 pub fn read<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> Outcome {
     let copies = Copies::check(memory);
@@ -127,7 +128,8 @@ pub fn save<M: Memory>(settings: &mut Settings, memory: &M) -> Option<Writing> {
     Some(copy(copies.latest ^ 1).write())
 }
 
-/// The pose of the last rest, if the robot has not moved since.
+/// The pose of the last rest. `None` if the robot has moved since, or if the record is damaged or belongs to other
+/// servos.
 pub fn last_rest_pose<M: Memory>(robot: &Robot, memory: &M) -> Option<Pose> {
     let mut bytes = [0; CONTENT];
     REST_POSE.fetch(memory, &mut bytes);

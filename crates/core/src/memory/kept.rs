@@ -15,10 +15,10 @@
 //! | 0 | a mark: power was not lost |
 //! | 1 | the program runs, or hung |
 //! | 2 | restarts since power came on |
-//! | 3 | the copy that is valid, in the last bit |
-//! | 4 | the rate of the serial line, in the last two bits; a wrong one is found again |
+//! | 3 | number of the valid copy, in the lowest bit |
+//! | 4 | the rate of the serial line, in the lowest two bits; if it is wrong, the console finds the right one |
 //! | 5 | first copy: state, brown-outs in a row, pose (8), pulses (8), check |
-//! | 24 | second copy |
+//! | 24 | second copy, with the fields of the first one |
 
 use crate::memory::restart::{Cause, Restart, Stance};
 use crate::numbers::rate::Rate;
@@ -42,10 +42,10 @@ const VALID_COPY: usize = 3;
 const RATE: usize = 4;
 const COPIES: usize = 5;
 
-/// Cells of a copy.
+/// Number of cells in a copy.
 const COPY_CELLS: usize = 19;
 
-/// The first cell's value as long as there is power.
+/// The value of the mark's cell as long as there is power.
 const ALIVE: u8 = 0x96;
 
 /// The values of [`STATE`] for a program that runs, and for one that hung.
@@ -55,7 +55,7 @@ const HUNG: u8 = 0xa3;
 /// The flag in a copy's first byte for no pulses; the other bits are the frames since pulses began.
 const RESTING: u8 = 0x80;
 
-/// The value of that byte in a copy that holds nothing.
+/// The first byte of a copy that holds no stance.
 const NOTHING: u8 = 0x7f;
 
 /// Returns the cause of the reset and the state from before it, and marks the program as
@@ -156,7 +156,7 @@ struct Copy<'a, C> {
     cells: &'a C,
     /// The next cell.
     cell: usize,
-    /// The sum of all bytes so far.
+    /// The sum of all bytes written or read so far.
     sum: u8,
 }
 

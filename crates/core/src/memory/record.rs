@@ -47,9 +47,9 @@ pub struct Address(pub u16);
 /// The state of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RecordState {
-    /// Nothing was ever written there.
+    /// The bytes of the record were never written.
     Blank,
-    /// A record that was not written to its end, or has changed since.
+    /// A record that was invalidated, was not written to its end, or has changed since.
     Damaged,
     /// A valid record.
     Valid,
@@ -66,7 +66,7 @@ pub enum Progress {
     Failed,
 }
 
-/// The progress of a step's byte.
+/// The progress of the byte of the current step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 // Starts at 1, since `None` has to be zero: see `Main::new`.
 #[repr(u8)]
@@ -141,7 +141,7 @@ impl Address {
 }
 
 impl Writing {
-    /// Does a step: writes one byte at most, and none whose value is there already.
+    /// Does a step: writes one byte at most, and none that the memory already holds.
     /// `content` must be the same in every step.
     #[inline(never)]
     pub fn step<M: Memory>(&mut self, content: &Content, memory: &mut M) -> Progress {

@@ -32,7 +32,7 @@ impl Cause {
 pub struct Stance {
     /// True while the servos get no pulses.
     pub is_resting: bool,
-    /// Frames since pulses began, up to [`crate::motion::AWAKE`]; servos wake one
+    /// Frames since pulses began, up to [`crate::motion::AWAKE_FRAMES`]; servos wake one
     /// after the other.
     pub frames_awake: u8,
     /// The pose that the servos hold or last held.
@@ -54,10 +54,10 @@ pub struct Restart {
     pub may_be_supply: bool,
     /// Consecutive resets before this one that a weak supply may have caused.
     pub brown_outs: u8,
-    /// The rate of the serial line: that before a brown-out or a hang, else the fastest, since USB uses it, and
-    /// opening its port resets the board.
+    /// The rate of the serial line: after a brown-out or a hang, the rate before it; otherwise the fastest, since
+    /// opening the USB port resets the board, and USB uses the fastest rate.
     pub rate: Rate,
-    /// The servos' state before the reset, if it is known. Always `None` after
+    /// The servos' state before the reset; `None` if it is unknown, and always after
     /// [`Cause::Power`].
     pub before: Option<Stance>,
 }

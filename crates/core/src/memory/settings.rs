@@ -7,9 +7,9 @@
 //! | byte | what |
 //! |---|---|
 //! | 0 | [`FORMAT`] |
-//! | 1 | the turn: one more with every `save` |
-//! | 2 | hash of the servos that they are for, 4 bytes |
-//! | 6 | for each servo trim, gain, clockwise and counter-clockwise end, 2 bytes each |
+//! | 1 | the save number, increased by every `save` that changes a setting |
+//! | 2 | hash of the servos that the settings are for, 4 bytes |
+//! | 6 | for each servo trim, gain, clockwise and counter-clockwise limit, 2 bytes each |
 //! | 38 | `boot`: 0 for `rest`, else the [`key`] of a gait |
 //! | 40 | `deadman`, ms |
 
@@ -25,7 +25,7 @@ use crate::numbers::units::Sweep;
 /// The format of the bytes, increased when their meaning changes.
 pub const FORMAT: u8 = 1;
 
-/// The offset of the turn, the number of the save.
+/// The offset of the save number.
 pub const TURN: usize = 1;
 const HASH: usize = 2;
 const SERVOS: usize = 6;
@@ -86,7 +86,7 @@ impl Settings {
         saved
     }
 
-    /// The pose of [`Settings::of_pose`].
+    /// The trims as the sweeps of a pose; for a record of [`Settings::of_pose`], the pose that it keeps.
     #[inline(never)]
     pub fn pose(&self) -> Pose {
         let mut pose = Pose::NEUTRAL;
@@ -113,7 +113,7 @@ impl Settings {
         &mut self.bytes
     }
 
-    /// True if the settings have this format and belong to the servos of this robot.
+    /// True if the settings have the format [`FORMAT`] and belong to the servos of this robot.
     pub fn belong_to(&self, robot: &Robot) -> bool {
         let hash = robot.servo_hash();
         self.bytes[0] == FORMAT
@@ -192,7 +192,8 @@ impl Settings {
         self.servo(servo).apply(&robot.servo(servo))
     }
 
-    /// The first servo whose travel ends short of the neutral angle or of a gait.
+    /// The first servo whose travel does not include the neutral angle and all sweeps of the gaits; `None` if every
+    /// travel does.
     #[inline(never)]
     pub fn first_unfit_servo(&self, robot: &Robot) -> Option<Servo> {
         Servo::all().find(|servo| {

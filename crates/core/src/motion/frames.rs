@@ -1,7 +1,7 @@
-//! The robot's motion: one pose every 20 ms, whatever is ordered.
+//! The robot's motion: one pose every 20 ms, whatever the commands are.
 //!
 //! A servo that gets a distant angle turns as fast as it can. If all four do, the supply
-//! sags. So nothing here ever jumps. A change from any motion to any other has three
+//! sags. So no pose here ever jumps. A change from any motion to any other has three
 //! parts, each continuous in speed:
 //!
 //! 1. the old motion brakes along its own path (a gait within its cycle, a move within
@@ -13,7 +13,8 @@
 //! `stop` skips the braking and freezes the pose in the next frame; `rest` ends the pulses.
 //!
 //! # States
-//! The state, the motion that comes next, and the effect of a frame on both. "Standing
+//! The effect of each command and of each frame, by state. "That next" makes the commanded
+//! gait or pose the target that follows the present motion; "-" changes nothing. "Standing
 //! still" is a pace of 0.
 //!
 //! | state | command | frame |
@@ -24,9 +25,8 @@
 //! | `Cycling` through a gait | another gait or a pose: that next; the same gait: - | brakes if there is a next, and once it stands still is `Moving` towards that |
 //! | any but `Resting` | `stop`: `Holding`; `rest`: `Resting`; nothing next | an unsafe pose: `Holding` the last one, nothing next, with the reason |
 //!
-//! A new calibration changes the pulses of a pose. Then the pose stays as it is, in every
-//! state, while the pulses change at the slew limit to the new ones of this pose. After
-//! that a motion starts again gradually.
+//! A new calibration changes the pulses of a pose. Then the pose stays as it is, in every state, while the pulses
+//! move to their new widths at the slew limit. After that the motion speeds up again from a pace of 0.
 //!
 //! Invariants: every pose that leaves [`Motion::tick`] has passed the guard. A pose that has not passed is
 //! never sent; the last safe pose is held instead, and the reason is kept for the console. The 50 Hz call of
@@ -53,13 +53,13 @@ mod count;
 mod report;
 mod resume;
 
-/// Servos wake one after the other, 0.1 s apart, to spare the supply.
+/// Frames from the wake-up of one servo to that of the next, 0.1 s, to spare the supply.
 const WAKE_INTERVAL_FRAMES: u8 = 5;
 
-/// The gaits' own pace, percent.
+/// The speed setting at which a gait has its own pace, percent.
 const FULL_PERCENT: u8 = 100;
 
-/// Frames from the first pulse until all four are awake and motion may begin.
+/// Frames from the command that wakes the servos until all four are awake and motion may begin.
 pub const AWAKE_FRAMES: u8 = 4 * WAKE_INTERVAL_FRAMES;
 
 /// The motion of a robot: its state, its target and the pulses of the last frame.
@@ -70,7 +70,7 @@ pub struct Motion {
     state: State,
     /// The target after the present motion has stopped; always `None` while the robot rests.
     next: Option<Target>,
-    /// The count of the gait that is under way or comes next.
+    /// The cycles left of the gait that is under way or comes next.
     count: Count,
     /// True in the frame in which a gait has ended.
     has_ended: bool,
@@ -132,13 +132,13 @@ impl Motion {
         Ok(())
     }
 
-    /// Wakes the servos, to stand.
+    /// Wakes the servos; then the robot stands.
     pub fn begin(&mut self) {
         self.stance.is_resting = false;
         self.state = State::cycling(&self.robot, GaitId::STAND);
     }
 
-    /// The robot that moves.
+    /// The description of the robot that moves.
     pub const fn robot(&self) -> &Robot<'static> {
         &self.robot
     }
@@ -167,8 +167,8 @@ impl Motion {
         self.is_settling = true;
     }
 
-    /// True if the robot's pose or target is beyond a servo's travel in another
-    /// calibration.
+    /// True if the present pose or a target would be beyond the travel of `servo` with
+    /// `calibration`.
     pub fn goes_beyond(&self, servo: Servo, calibration: &Calibration) -> bool {
         let is_beyond = |pose: &Pose| !calibration.reaches(*servo.of(&pose.0));
         let is_target_beyond = match &self.state {
@@ -187,8 +187,9 @@ impl Motion {
         &self.stance
     }
 
-    /// Starts a gait by a move to its first pose. A gait that is already under way continues.
-    /// It brakes after `cycles` more, and its last pose is held; 0 means without end.
+    /// Starts a gait with a move to its first pose, or continues it if it is already under way.
+    /// After `cycles` more cycles the gait brakes, and the robot holds the pose in which it
+    /// stops; with 0 the gait goes on without end.
     #[inline(never)]
     pub fn start_gait(&mut self, id: GaitId, cycles: u16) {
         if self.activity() != Activity::Gait(id) {
@@ -200,8 +201,8 @@ impl Motion {
         self.count.phase_covered = 0;
     }
 
-    /// Brakes a gait, or the move to it, and holds the pose in which it stops. Returns false if there is none
-    /// to end.
+    /// Brakes the gait or move under way, cancels the next target, and holds the pose in which the robot
+    /// stops. Returns false if nothing is under way or comes next.
     #[inline(never)]
     pub fn end_gait(&mut self) -> bool {
         let is_moving = self.next.is_some()
@@ -267,7 +268,7 @@ impl Motion {
         } else if !self.is_settling {
             self.advance_motion();
         }
-        // While they settle, pulses change by at most the slew limit of a frame.
+        // While the pulses settle, they change by at most the slew limit per frame.
         let per_frame = self.robot.slew().per_frame;
         let is_first = self.frames == 1;
         let mut is_settling = false;
@@ -278,8 +279,9 @@ impl Motion {
             let is_asleep = self.stance.frames_awake < wakes_at;
             let mut width = servo.width(self.stance.pose.0[index]);
             if self.is_settling && sent.0 != 0 {
-                // A servo's first pulse repeats its last one, also that of the previous
-                // run: a reset may have come while it was settling, or before the pulse.
+                // A servo's first pulse repeats the last stored width, even one from before a
+                // reset: the reset may have come while the pulses were settling, or before a
+                // stored width was sent.
                 let is_repeated = is_first || awake_before < wakes_at;
                 let max_change = if is_repeated {
                     0

@@ -1,9 +1,9 @@
 //! A gait: four sweeps as a function of one phase.
 //!
 //! Feet are never lifted; each leg swings and drags its pad. The robot advances because of the swing's shape and the
-//! order of the legs, so a gait is a set of waveforms, read for the four servos with an offset and a gain each. A
-//! waveform is a table of 64 samples in flash. Linear interpolation between the samples is within half a degree of
-//! the real curve, less than a hobby servo resolves. The host that makes the tables checks that.
+//! order of the legs, so a gait gives each servo a waveform with a phase offset and a gain. A waveform is a table of
+//! 64 samples in flash. Linear interpolation between the samples is within half a degree of the real curve, less than
+//! a hobby servo resolves. The host that makes the tables checks that.
 
 use lizard_avr::{Flash, mul};
 
@@ -23,7 +23,7 @@ impl Gait {
         pose
     }
 
-    /// The phase one frame later, at `pace` (1024 is the gait's own).
+    /// The phase one frame later, at `pace` (1024 is full pace).
     pub const fn advance(&self, phase: u32, pace: u16) -> u32 {
         let step = self.increment.wrapping_mul(pace as i32) >> 10;
         phase.wrapping_add(step as u32) & (CYCLE - 1)

@@ -1,7 +1,8 @@
 //! A point-to-point move: straight from one pose to another.
 //!
-//! All four servos start together, follow one smoothstep and arrive together. The longest distance sets the time, so
-//! that no servo exceeds the slew limit. The top speed of a smoothstep is one and a half times that of a steady move.
+//! All four servos start together, follow one smoothstep and arrive together. The largest turn of a servo sets the
+//! time, so that no servo exceeds the slew limit. The top speed of a smoothstep is one and a half times that of a
+//! steady move.
 
 use lizard_avr::{mul, mul_unsigned};
 
@@ -12,7 +13,7 @@ use crate::numbers::slew::Slew;
 /// move changes a servo's speed faster than the gaits do.
 const MIN_FRAMES: u16 = 8;
 
-/// The full duration of a move, Q15.
+/// The full duration of a move, 1.0 in Q15.
 const END: u16 = 1 << 15;
 
 /// A move in progress.
@@ -63,7 +64,7 @@ impl PointToPoint {
         let share = smoothstep(self.elapsed) as i16;
         let mut pose = self.from;
         for (sweep, to) in pose.0.iter_mut().zip(&self.to.0) {
-            // Twice half the distance, because the full distance may be more than half a turn and overflow.
+            // Half the turn is multiplied, then doubled, because a turn of more than half a turn would overflow.
             let half = (to.0 >> 1) - (sweep.0 >> 1);
             let distance = (mul(half, share) + (1 << 13)) >> 14;
             sweep.0 = sweep.0.wrapping_add(distance as i16);

@@ -22,8 +22,9 @@ lizard_avr::plain! {
         pub(crate) right: i16,
         /// `1 / (4 a b)`, in the scale that results from the two shifts.
         pub(crate) per_area: u16,
-        /// `2^27` divided by the left coupler and, below, by the right one.
+        /// `2^27` divided by the left coupler.
         pub(crate) per_left: i16,
+        /// `2^27` divided by the right coupler.
         pub(crate) per_right: i16,
         /// The shift that reduces a squared distance of the crank tips to fifteen bits.
         pub(crate) square_shift: u16,

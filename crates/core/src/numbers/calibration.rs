@@ -16,9 +16,9 @@ lizard_avr::plain! {
         pub neutral: Width,
         /// CPU cycles for each 1/65536 turn, Q14; negative for a servo that a longer pulse turns clockwise.
         pub gain: i16,
-        /// The travel's clockwise end.
+        /// The clockwise limit of the travel.
         pub min: Sweep,
-        /// The travel's counter-clockwise end.
+        /// The counter-clockwise limit of the travel.
         pub max: Sweep,
     }
 }
@@ -37,13 +37,14 @@ impl Calibration {
         Width(self.neutral.0.wrapping_add(self.turned(sweep) as u16))
     }
 
-    /// The pulse width for any sweep, also one beyond the travel, clamped to 0..=65535.
+    /// The pulse width for any sweep, even one beyond the travel, clamped to 0..=65535.
     #[inline(never)]
     pub fn pulse(&self, sweep: Sweep) -> u16 {
         let pulse = i32::from(self.neutral.0) + self.turned(sweep);
         pulse.clamp(0, i32::from(u16::MAX)) as u16
     }
 
+    /// The change of the pulse width for a sweep from neutral, CPU cycles.
     fn turned(&self, sweep: Sweep) -> i32 {
         (mul(sweep.0, self.gain) + (1 << 13)) >> 14
     }
@@ -65,9 +66,9 @@ lizard_avr::plain! {
     /// The range of a servo's sweeps that a robot's gaits need; it includes the neutral angle, 0.
     #[derive(Debug, Default, PartialEq, Eq)]
     pub struct Reach {
-        /// The clockwise end.
+        /// The clockwise limit of the range.
         pub min: Sweep,
-        /// The counter-clockwise end.
+        /// The counter-clockwise limit of the range.
         pub max: Sweep,
     }
 }

@@ -17,7 +17,7 @@ pub const MAX_ROWS: usize = 64;
 /// Binary logarithm of a row's width, in steps of a sweep (1/65536 turn): 1.4 deg.
 pub const ROW_BITS: u32 = 8;
 
-/// Binary logarithm of a column's width, in the same steps: 0.7 deg.
+/// Binary logarithm of a column's width, in steps of a sweep (1/65536 turn): 0.7 deg.
 pub const COLUMN_BITS: u32 = 7;
 
 flash! {
@@ -28,10 +28,13 @@ flash! {
 /// the guard that depends on these two servos holds.
 #[derive(Clone, Copy)]
 pub struct Cells<'a> {
+    /// The number of the map's first row.
     first: i8,
-    /// The index of the first row in `rows`, and the number of rows.
+    /// The index of the map's first row in `rows`.
     begin: u16,
+    /// The number of rows in the map.
     count: u8,
+    /// The rows of all maps.
     rows: Flash<'a, [[i8; 2]]>,
 }
 
@@ -41,8 +44,8 @@ impl Cells<'static> {
 }
 
 impl<'a> Cells<'a> {
-    /// The map whose `count` rows begin at index `start` of `rows`. They are consecutive rows, beginning with number
-    /// `first`; numbers wrap around at the end of the turn. Each row holds its first and its last column, both
+    /// The map whose `count` rows begin at index `start` of `rows`. The rows are consecutive, beginning with row
+    /// number `first`; row numbers wrap around after a turn. Each row holds its first and its last column, both
     /// inclusive; if the first is greater than the last, the row is empty. The number of a row or column is a sweep
     /// divided by 2 to the [`ROW_BITS`] or [`COLUMN_BITS`], rounded down.
     #[inline(always)]
@@ -123,6 +126,7 @@ mod tests {
         i16::MAX,
     ];
 
+    /// Checks that [`Cells::contains`] agrees with its reference at every row and at all [`COLUMNS`].
     fn agrees(first: i8, rows: &[[i8; 2]]) {
         let cells = Cells::new(first, Flash::from(rows));
         for row in i16::MIN..=i16::MAX {

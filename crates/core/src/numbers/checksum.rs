@@ -14,10 +14,10 @@ impl Checksum {
     pub const EMPTY: Self = Self(u16::MAX);
 
     /// The checksum with one more byte.
-    #[cfg_attr(target_arch = "avr", inline(never))] // once in flash
+    #[cfg_attr(target_arch = "avr", inline(never))] // one copy in flash
     pub const fn with_byte(self, byte: u8) -> Self {
-        // Eight bit steps at once: the byte is XORed with the high half of the sum, and the bits shifted out are fed
-        // back at the powers of the polynomial.
+        // All eight bits in one step: the byte is XORed with the high half of the sum, and the bits shifted out are
+        // fed back at the powers of the polynomial.
         let out = (self.0 >> 8) as u8 ^ byte;
         let out = (out ^ (out >> 4)) as u16;
         Self((self.0 << 8) ^ (out << 12) ^ (out << 5) ^ out)

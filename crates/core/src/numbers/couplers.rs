@@ -1,6 +1,6 @@
 //! The triangle formed by the two couplers and the line between the crank tips.
 //!
-//! Couplers of lengths `a` (left) and `b` (right) meet in the end point, the head or the tail. The shape of the
+//! Couplers of lengths `a` (left) and `b` (right) are joined at the end point, the head or the tail. The shape of the
 //! triangle depends only on the squared distance `s` of the crank tips. The margins need just two functions of `s`:
 //!
 //! ```text
@@ -9,11 +9,11 @@
 //! ```
 //!
 //! (height and foot of the end point over the line, the foot counted from the left crank tip; Heron's formula gives
-//! the height.) Both are read from a [`Curve`]. At either end of its range the rise falls to zero like a square root,
-//! too steeply for a table over `s`. There it is a function of the distance from that end, `R - s` or `s - N`, with
-//! its own table. A robot that cannot reach that end does not have this table. The rise is largest at
-//! `s = 2 R N / (R + N)`, which is below `2 N`. The table over `s` holds the falling part above that point; below it,
-//! the table holds the largest rise.
+//! the height.) Both are read from a [`Curve`]. At either limit of its range the rise falls to zero like a square
+//! root, too steeply for a table over `s`. So near each limit the rise is a function of the distance from that limit,
+//! `R - s` or `s - N`, with its own table. A robot that cannot reach a limit does not have the table for it. The rise
+//! is largest at `s = 2 R N / (R + N)`, which is below `2 N`. The table over `s` holds the falling part above that
+//! point; below it, the table holds the largest rise.
 
 use lizard_avr::Flash;
 
@@ -51,16 +51,17 @@ lizard_avr::plain! {
         right: i16,
         /// `R` in the steps of `s`, each a quarter of a squared step of the bars.
         reach_sq: u32,
-        /// `N` in the same steps.
+        /// `N` in the steps of `s`.
         least_sq: u32,
-        /// Leading zeros of the two squares above.
+        /// Leading zeros of `reach_sq`.
         reach_zeros: u16,
+        /// Leading zeros of `least_sq`.
         least_zeros: u16,
     }
 }
 
 impl Coupling {
-    /// Couplers without length, which never meet.
+    /// Couplers without length, which never close a loop.
     pub const NONE: Self = Self {
         left: 0,
         right: 0,
@@ -122,8 +123,8 @@ impl<'a> Couplers<'a> {
     }
 
     /// True for couplers whose difference alone keeps the crank tips so far apart that the margins are known up to
-    /// the folded position: there the rise is read from the table of folded couplers. For other couplers,
-    /// [`Couplers::at`] returns `None` so near to it.
+    /// the folded position: near it the rise is read from the table of folded couplers. For other couplers,
+    /// [`Couplers::at`] returns `None` near the folded position.
     pub const fn differ_much(left: i16, right: i16) -> bool {
         Coupling::new(left, right).differs_much()
     }
@@ -135,8 +136,9 @@ impl<'a> Couplers<'a> {
     }
 
     /// The lean at a squared distance of the crank tips, in quarters of a squared step of the bars. `None` if the
-    /// couplers do not close the loop. Also `None` so near to that limit, or to coinciding crank tips, that the
-    /// type-2 margin is below a tenth, the smallest limit that a robot may have.
+    /// couplers do not close the loop. Also `None` near the distances at which the loop just closes, and near
+    /// coinciding crank tips, where the tables have no value; the type-2 margin is then below a tenth, the smallest
+    /// limit that a robot may have.
     #[inline(always)]
     pub fn at(&self, tips_sq: u32) -> Option<Lean> {
         let Self { lengths, tables } = self;
@@ -203,7 +205,7 @@ pub fn folded(left: i16, right: i16) -> Table {
     })
 }
 
-/// The size of the skew over `s`; made by a host.
+/// The magnitude of the skew over `s`; made by a host.
 pub fn skew(left: i16, right: i16) -> Table {
     let reach_sq = reach_sq(left, right);
     // a^2 - b^2 in the steps of `s`, each a quarter of a squared step of the bars.

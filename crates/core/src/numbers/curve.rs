@@ -10,7 +10,7 @@ use lizard_avr::{Flash, mul_unsigned};
 /// Steps in an octave of the argument.
 const STEPS: usize = 16;
 
-/// Octaves below that of the largest argument.
+/// Number of octaves in a table below the octave of the largest argument.
 pub const OCTAVES: u32 = 10;
 
 /// Number of entries: the steps of all octaves, and the end of the last octave.
@@ -47,13 +47,14 @@ impl<'a> Curve<'a> {
         self.read(argument, 0)
     }
 
-    /// The value of any function, rounded to nearest; `None` as for [`Curve::falling`].
+    /// The value of any function, rounded to nearest; `None` below the table's first octave, as for
+    /// [`Curve::at_rounded_up`].
     pub fn at(&self, argument: u32) -> Option<i16> {
         self.read(argument, 0x8000)
     }
 
-    /// Interpolates the value; `round` is added to the difference from the entry before its lower 16 bits are
-    /// dropped.
+    /// Interpolates the value; `round` is added to the difference from the nearest lower entry, of which the lower
+    /// 16 bits are then dropped.
     #[inline(never)]
     fn read(&self, argument: u32, round: u16) -> Option<i16> {
         let mut mantissa = argument;

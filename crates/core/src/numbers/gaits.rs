@@ -107,13 +107,13 @@ impl Step {
     /// Stops the pulses for `count` frames, at least one.
     pub const REST: u8 = 2;
 
-    /// The robot stands still until a contact closes; the record before this one names that contact.
+    /// Waits without motion until a contact closes; the previous record names that contact.
     pub const WAIT: u8 = 3;
 
-    /// A record in front of a step. It names a contact that ends the step before its count or time is over.
+    /// A record before a step. It names a contact that ends the step before its count or time is over.
     pub const UNTIL: u8 = 4;
 
-    /// The frames of a step that only its contact ends.
+    /// The `count` of a step that only its contact ends.
     pub const ENDLESS: u16 = u16::MAX;
 }
 

@@ -6,12 +6,12 @@
 //! it cannot be mistaken for the firmware because of an old mark.
 //!
 //! ```
-//! use lizard_core::numbers::mark::{AT, Mark};
+//! use lizard_core::numbers::mark::{ADDRESS, Mark};
 //!
 //! let mut flash = vec![0xff; 128];
 //! assert_eq!(Mark::find(&flash), None);
-//! flash[AT..AT + 10].copy_from_slice(&Mark::HERE.bytes());
-//! assert_eq!(Mark::find(&flash), Some(Mark::HERE));
+//! flash[ADDRESS..ADDRESS + 10].copy_from_slice(&Mark::OWN.bytes());
+//! assert_eq!(Mark::find(&flash), Some(Mark::OWN));
 //! ```
 
 use crate::numbers::section::{FORMAT, MAGIC};
@@ -65,6 +65,7 @@ impl Mark {
     }
 }
 
+/// Parses a part of the version.
 const fn number(text: &str) -> u8 {
     match u8::from_str_radix(text, 10) {
         Ok(number) => number,

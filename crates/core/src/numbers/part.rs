@@ -17,9 +17,9 @@ pub enum Servo {
 /// An end of the body: a five-bar whose end point is the head or the tail.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// In front, between A1 and A2.
+    /// The five-bar in front, between A1 and A2.
     Head,
-    /// Behind, between A4 and A3.
+    /// The five-bar at the back, between A4 and A3.
     Tail,
 }
 

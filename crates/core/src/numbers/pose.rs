@@ -39,7 +39,7 @@ impl Pose {
         angles
     }
 
-    /// The first servo whose travel does not reach its sweep.
+    /// The first servo whose travel does not include its sweep; `None` if every travel does.
     pub fn first_beyond_travel(&self, calibration: &[Calibration; 4]) -> Option<Servo> {
         for (index, servo) in calibration.iter().enumerate() {
             if !servo.reaches(self.0[index]) {

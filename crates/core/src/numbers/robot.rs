@@ -54,19 +54,20 @@ impl<'a> Robot<'a> {
         }
     }
 
-    /// The robot of a newly made section whose numbers are not checked yet; for the code that checks them.
+    /// The robot of a newly made section whose numbers are not checked yet, for the code that checks them. `None` if
+    /// the section's header, length or checksum is wrong.
     #[cfg(any(test, feature = "host"))]
     pub fn unchecked(flash: Region<'a>) -> Option<Self> {
         let length = section::check(flash).ok()?;
         Some(Self::at(flash.first(length)))
     }
 
-    /// True if there is no robot.
+    /// True for [`Robot::NONE`].
     pub const fn is_none(&self) -> bool {
         !self.is_present
     }
 
-    /// The flash region that is exactly its section.
+    /// The flash region that is exactly the robot's section.
     pub const fn section(&self) -> Region<'a> {
         self.section
     }
@@ -101,7 +102,7 @@ impl<'a> Robot<'a> {
         self.number(offset_of!(Numbers, pins))
     }
 
-    /// The Arduino number of the pin where the servos' rail is measured, 14 to 19.
+    /// The Arduino number of the pin where the servos' rail is measured, 14 to 19; `None` if it is not measured.
     pub fn rail_pin(&self) -> Option<u8> {
         match self.number(offset_of!(Numbers, rail)) {
             0 => None,
@@ -114,12 +115,12 @@ impl<'a> Robot<'a> {
         self.number(offset_of!(Numbers, slow_pace))
     }
 
-    /// The bars of an end, in that end's own frame.
+    /// The bars of head or tail, in the frame of that five-bar.
     pub fn bars(&self, end: End) -> Bars {
         self.number(offset_of!(Numbers, ends) + end as usize * size_of::<Bars>())
     }
 
-    /// The tables of an end's couplers.
+    /// The tables of the couplers of head or tail.
     pub(crate) fn tables(&self, end: End) -> Tables<'a> {
         let curves = offset_of!(Numbers, curves) + end as usize * size_of::<[u16; CURVES]>();
         let table = |curve: usize| match self.number(curves + curve * size_of::<u16>()) {

@@ -1,6 +1,6 @@
 //! A square root and a quotient, computed in integers bit by bit.
 //!
-//! The five-bar's closed form needs one root; a voltage and the end of a travel are quotients. The chip has an
+//! The slider's length that is reported is a root; a voltage and a limit of a travel are quotients. The chip has an
 //! instruction for neither, and the compiler's 32-bit division takes a kilobyte.
 
 use lizard_avr::mul_unsigned;
@@ -25,7 +25,7 @@ pub const fn root(square: u32) -> u16 {
     root as u16
 }
 
-/// `dividend / divisor`, rounded down; 65535 if it is larger or the divisor is 0.
+/// `dividend / divisor`, rounded down; 65535 if the quotient is larger or the divisor is 0.
 #[inline(never)]
 pub fn quotient(dividend: u32, divisor: u16) -> u16 {
     let (mut rest, mut quotient) = (dividend, 0);

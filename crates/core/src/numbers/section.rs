@@ -8,12 +8,12 @@
 //! | part | bytes | what |
 //! |---|---|---|
 //! | [`Header`] | 36 | magic, [`FORMAT`], length, checksum of the rest, name, hash of the numbers, hash of the servos |
-//! | [`Numbers`] | 232 | see there |
-//! | curves | 354 each | of the head's couplers and, where they are others, the tail's: rise, and those of stretched, folded and skew that [`Numbers::curves`] names |
+//! | [`Numbers`] | 232 | bars, servos, limits, supplies, pins, and the addresses of the parts below |
+//! | curves | 354 each | of the couplers of the head and, where they differ, of the tail: rise, and those of stretched, folded and skew that [`Numbers::curves`] names |
 //! | gaits | 32 each | [`crate::numbers::gaits::Gait`]; routines are the last |
-//! | steps | 4 each | of the routines, [`crate::numbers::gaits::Step`] |
+//! | steps | 4 each | steps of the routines, [`crate::numbers::gaits::Step`] |
 //! | waveforms | 128 each | 64 samples |
-//! | names | | of the gaits, one after the other |
+//! | names | | names of the gaits, one after the other |
 //! | maps | 2 a row | certified cells of head, tail, left and right: first and last column |
 //!
 //! Each part is stored as the type named in the table, field by field, low bytes first. The device computes nothing
@@ -80,7 +80,7 @@ lizard_avr::plain! {
     /// The numbers of a robot.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Numbers {
-        /// The bars of head and tail, in the frame of each.
+        /// The bars of head and tail, each in its own frame.
         pub ends: [Bars; 2],
         /// The sliders left and right.
         pub sides: [Slider; 2],
@@ -107,14 +107,15 @@ lizard_avr::plain! {
         pub slow_pace: u8,
         /// The Arduino numbers of the servos' pins; 14 to 19 are A0 to A5.
         pub pins: [u8; 4],
-        /// The heads of the maps of head, tail, left and right. They are the last field, because the hash does not
+        /// The headers of the maps of head, tail, left and right. They are the last field, because the hash does not
         /// include them.
         pub maps: [MapHead; 4],
     }
 }
 
-/// The offset of the numbers; below, that of the first byte after them.
+/// The offset of the numbers.
 pub(crate) const NUMBERS: u16 = size_of::<Header>() as u16;
+/// The offset of the first byte after the numbers.
 pub(crate) const AFTER_NUMBERS: u16 = NUMBERS + size_of::<Numbers>() as u16;
 
 /// The number of curves of each pair of couplers.
@@ -148,10 +149,10 @@ lizard_avr::plain! {
 }
 
 lizard_avr::plain! {
-    /// The head of a map of certified cells.
+    /// The header of a map of certified cells.
     #[derive(Debug, PartialEq, Eq)]
     pub struct MapHead {
-        /// The first row.
+        /// The number of the first row.
         pub first: i8,
         /// The number of rows.
         pub rows: u8,

@@ -4,7 +4,7 @@ use lizard_avr::mul_unsigned;
 
 use crate::numbers::units::Scale;
 
-/// The largest length on a side, in steps: that of chassis, arms and offset together, and that of the slider.
+/// The limit of two lengths of a side, in steps: the sum of base, arms and offset, and the slider's length.
 pub const MAX_STEPS: f64 = 255.0 * 256.0;
 
 /// The largest sum of both arms and the offset, in steps; it has to fit a signed number.

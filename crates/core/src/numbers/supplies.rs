@@ -1,7 +1,7 @@
 //! The supplies as robot.toml describes them: the chip's reference voltage and the thresholds.
 
 lizard_avr::plain! {
-    /// The falling thresholds of one supply below which the robot reacts, mV.
+    /// The thresholds of one supply, mV. The robot reacts when the voltage falls below one of them.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Thresholds {
         /// The voltage below which gaits slow down and the EEPROM is not written.

@@ -1,12 +1,12 @@
 //! The units of the core, and every conversion between them.
 //!
 //! Floating point is slow on an 8-bit processor, so each quantity is an integer whose step is finer than the robot
-//! can show. A value that one module passes to another has its own type; inside a formula it is a plain integer.
+//! can resolve. A value that one module passes to another has its own type; inside a formula it is a plain integer.
 //!
 //! | quantity | type | step |
 //! |---|---|---|
 //! | angle, chassis frame | [`Angle`], wraps with the turn | 1/65536 turn = 0.0055 deg |
-//! | sweep, an angle from a servo's neutral | [`Sweep`] | the same |
+//! | sweep, an angle from a servo's neutral | [`Sweep`] | 1/65536 turn |
 //! | angle at the console | `i32`, `u16` | 0.01 deg |
 //! | length | `i16`, `u16` | [`Scale`]: 1/256 mm for a robot of the paper's size |
 //! | margin, a sine | [`Sine`], Q15 | 1/32768 |
@@ -90,7 +90,7 @@ lizard_avr::plain! {
 }
 
 impl Angle {
-    /// The angle for `centideg`, at most one turn either way, within 0.004 deg.
+    /// The angle for `centideg`, at most one turn in either direction, within 0.004 deg.
     #[inline(never)]
     pub fn from_centideg(centideg: i32) -> Self {
         let size = centideg.unsigned_abs() as u16;
@@ -120,7 +120,7 @@ impl Angle {
         Self(self.0.wrapping_add(sweep.0 as u16))
     }
 
-    /// The sweep from this angle to another one, the short way round.
+    /// The sweep from this angle to another one, in the direction of the smaller turn.
     pub const fn sweep_to(self, other: Self) -> Sweep {
         Sweep(other.0.wrapping_sub(self.0) as i16)
     }
@@ -137,8 +137,8 @@ impl Scale {
     /// The finest step, 1/16384 mm.
     pub const FINEST: Self = Self { bits: 14 };
 
-    /// Converts a length in this step to hundredths of a millimetre, rounded to nearest. The size of `length`,
-    /// without its sign, must fit 16 bits.
+    /// Converts a length in this step to hundredths of a millimetre, rounded to nearest. The magnitude of `length`
+    /// must fit 16 bits.
     #[inline(always)]
     pub fn hundredths(self, length: i32) -> i32 {
         let size = mul_unsigned(length.unsigned_abs() as u16, 100) as i32;
@@ -162,7 +162,7 @@ pub fn thousandths_from_phase(phase: u32) -> u16 {
 mod tests {
     use super::*;
 
-    /// The distance between two angles, deg, the short way round.
+    /// The smaller angle between two directions, deg.
     fn apart(a: f64, b: f64) -> f64 {
         let difference = (a - b).rem_euclid(360.0);
         difference.min(360.0 - difference)

@@ -1,4 +1,4 @@
-//! The bars of a sample's head and tail, with all tables that they need.
+//! The five-bar linkages of a sample robot's head and tail, with the tables of their couplers.
 
 use lizard_avr::Flash;
 use lizard_kinematics as kinematics;
@@ -10,16 +10,16 @@ use crate::numbers::curve::Table;
 use crate::numbers::section;
 use crate::numbers::units::Scale;
 
-/// The bars of one end, with all tables that they need.
+/// One five-bar linkage, head or tail, with the tables of its couplers. Its lengths are in steps.
 #[derive(Clone, Debug)]
 pub struct Loop {
-    /// The base and the two cranks. Their sum is the largest distance of the crank tips.
+    /// The base, the left and the right crank. Their sum is the largest distance between the crank tips.
     pub bars: [i16; 3],
     pub scale: Scale,
     pub couplers: Bars,
 }
 
-/// Two couplers and their tables.
+/// Both couplers, in steps, and their tables.
 #[derive(Clone, Debug)]
 pub struct Bars {
     pub left: i16,
@@ -58,8 +58,9 @@ impl Bars {
 }
 
 impl Loop {
-    /// Converts bars from mm to the finest step that holds them; `None` if a coupler is too short compared with the
-    /// other bars.
+    /// Converts bars from mm to the finest steps in which each coupler and the sum of the other bars are below
+    /// [`bars::MAX_STEPS`]; `None` if even steps of 1 mm are too fine, or if a coupler is shorter than
+    /// [`bars::MIN_COUPLER`] then.
     pub fn new(bars: &kinematics::FiveBar) -> Option<Self> {
         let [base, left, right] = [bars.base, bars.crank_left, bars.crank_right];
         let couplers = [bars.coupler_left, bars.coupler_right];
@@ -79,7 +80,7 @@ impl Loop {
         })
     }
 
-    /// The loop as the content of a section.
+    /// The five-bar as the content of a section.
     pub(super) fn content(&self) -> section::Loop {
         let [base, left, right] = self.bars;
         section::Loop {

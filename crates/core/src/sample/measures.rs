@@ -11,7 +11,7 @@ use crate::numbers::units::{Sweep, Width};
 /// One servo, with the values of robot.toml.
 #[derive(Clone, Copy, Debug)]
 pub struct Servo {
-    /// Chassis angle at the neutral width, deg.
+    /// Servo angle in the chassis frame at the neutral pulse width, deg.
     pub neutral: f64,
     pub neutral_us: f64,
     /// Negative for a reversed servo.
@@ -56,7 +56,7 @@ impl Measures {
         }
     }
 
-    /// A robot in which no two parts are equal.
+    /// A robot without symmetry: its head and tail, its sides and its servos all differ.
     pub fn odd() -> Self {
         let servo = |neutral, neutral_us, us_per_degree: f64, back: f64, on: f64| Servo {
             neutral,
@@ -157,8 +157,8 @@ impl Servo {
     }
 }
 
-/// A robot made from the links of two ends (base, left crank, couplers, right crank) and of two sides (chassis, rear
-/// arm, rear and front half of the slider, front arm).
+/// Builds a robot from the links of head and tail (base, left crank, left and right coupler, right crank) and of
+/// both sides (chassis, rear arm, rear and front half of the slider, front arm).
 fn lizard(head: [f64; 5], tail: [f64; 5], left: [f64; 5], right: [f64; 5]) -> Lizard {
     let mut links = [0.0; 20];
     for (index, part) in [head, tail, left, right].iter().enumerate() {

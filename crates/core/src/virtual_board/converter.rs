@@ -45,7 +45,7 @@ impl Converter {
         Self::new(self.actual, self.has_rail)
     }
 
-    /// Returns the last complete reading, or the default if there is none, and starts the next measurement.
+    /// Returns the last complete reading, or the default before the first one, and starts the next measurement.
     pub(super) fn next(&mut self) -> Reading {
         match self.frames {
             1 => {
@@ -68,7 +68,7 @@ impl Converter {
     }
 }
 
-/// The converter's reading of a supply `board`, and of a `rail` through its divider, both in mV.
+/// The converter's reading of the supply voltages `board` and `rail`, mV; the rail is measured through its divider.
 pub fn reading(supplies: &Supplies, board: u32, rail: u32) -> Reading {
     let board = u64::from(board);
     let parts = |mv: u64| ((1024 * mv + board / 2) / board.max(1)).min(1023) as u16;

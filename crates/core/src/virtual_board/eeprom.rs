@@ -22,7 +22,7 @@ pub struct Eeprom {
     busy: Cell<u16>,
     /// True if the last poll found the EEPROM busy; only set if `is_timed`.
     was_polled_busy: Cell<bool>,
-    /// The byte that is being written.
+    /// Address of the byte that is being written.
     under_way: Cell<Option<u16>>,
 }
 
@@ -77,7 +77,7 @@ impl Eeprom {
         self.under_way.get()
     }
 
-    /// True if the last poll found the EEPROM busy and only time makes it ready. Clears the flag.
+    /// True if the last poll found the EEPROM busy and only the passing of time makes it ready. Clears the flag.
     pub fn was_polled_busy(&self) -> bool {
         self.was_polled_busy.take()
     }
@@ -91,7 +91,7 @@ impl Eeprom {
         }
     }
 
-    /// Lets the byte that is being written finish.
+    /// Completes the write of a byte at once.
     pub(super) fn settle(&mut self) {
         self.busy.set(0);
         self.under_way.set(None);

@@ -7,7 +7,7 @@ use crate::memory::kept::{self, CELLS, Cells};
 use crate::memory::restart::{Cause, Restart, Stance};
 use crate::numbers::rate::Rate;
 
-/// The cells of [`crate::memory::kept`], in memory of the host.
+/// The cells of [`crate::memory::kept`], in the host's memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Ram(Cell<[u8; CELLS]>);
 
@@ -39,12 +39,15 @@ impl Cells for Ram {
 }
 
 impl Ram {
-    /// The state that the program would find if it started now.
+    /// The state that the program would find if it started now; changes nothing. `reported` is the cause that the
+    /// chip reports, or `None` if a boot loader hides it.
     pub fn found(&self, reported: Option<Cause>) -> Restart {
         kept::begin(&self.clone(), reported)
     }
 
-    /// Starts the program.
+    /// Returns the cause of the reset and the state from before it, and marks the program as running, as the
+    /// firmware does at its start. `reported` is the cause that the chip reports, or `None` if a boot loader hides
+    /// it.
     pub fn begin(&self, reported: Option<Cause>) -> Restart {
         kept::begin(self, reported)
     }

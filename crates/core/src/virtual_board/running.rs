@@ -82,7 +82,8 @@ impl Running {
         panic!("it never rests");
     }
 
-    /// Runs a frame: the main loop computes it for the next tick, and its pulses begin. Returns the pulses.
+    /// Runs a frame: passes the time until 19 ms after the next tick, so that the main loop computes the frame and
+    /// its four pulses begin. Returns these pulses.
     pub fn frame(&mut self) -> Pulses {
         self.settle();
         self.board.pass_time(self.board.until_tick());

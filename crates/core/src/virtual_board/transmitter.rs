@@ -18,7 +18,7 @@ pub struct Transmitter {
     pub is_held: bool,
     /// CPU cycles per byte; 0 for a line without delay.
     per_byte: u64,
-    /// The number of bytes that it accepts before a writer has to wait.
+    /// Bytes that the transmitter accepts before a writer has to wait.
     capacity: u64,
     /// The current cycle.
     now: u64,
@@ -74,7 +74,7 @@ impl Transmitter {
         self.free = self.now + bytes * self.per_byte;
     }
 
-    /// The number of bytes that it takes without waiting, at most 255.
+    /// Bytes that the transmitter accepts without waiting, at most 255; none while it is held.
     pub fn room(&self) -> u8 {
         if self.is_held {
             return 0;

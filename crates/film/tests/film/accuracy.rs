@@ -32,7 +32,7 @@ fn watched_gait(film: &Film, gait: &Gait) -> (Measured, Sight) {
     (measured, watched.sight)
 }
 
-/// The parts of a measured movement, with their true values.
+/// Forward, left and turn of a measured cycle, each with its true value.
 fn parts(measured: &Measured, gait: &Gait) -> [(Mean, f64); 3] {
     let truth = truth(gait);
     [
@@ -62,7 +62,7 @@ fn a_cycle_is_measured_to_a_fifth_of_a_millimetre_and_half_a_degree() {
     }
 }
 
-/// Reads a number from an environment variable; `or` if there is none.
+/// Reads a number from an environment variable; returns `or` if it is not set or is no number.
 pub fn number(name: &str, or: usize) -> usize {
     let number = std::env::var(name).ok().and_then(|word| word.parse().ok());
     number.unwrap_or(or)

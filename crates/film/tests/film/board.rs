@@ -7,22 +7,27 @@ use lizard_film::Picture;
 
 use super::render::Studio;
 
-/// Acceleration of free fall, mm/s^2; below, the step of the simulation, s.
+/// Acceleration of free fall, mm/s^2.
 const GRAVITY: f64 = 9806.65;
+/// Time step of the simulation, s.
 const STEP: f64 = 0.0005;
-/// Place at which a hand stops the robot, mm downhill from where it stood.
+/// Distance downhill after which a hand stops the robot, mm.
 const STOPPED: f64 = 110.0;
 
 /// A board that is lifted, with a robot on it.
 #[derive(Clone, Copy)]
 pub struct Board {
+    /// Coefficient of static friction.
     pub resting: f64,
+    /// Coefficient of friction while the robot slides.
     pub sliding: f64,
-    /// Rate of the lift, deg/s; below, the time at which it begins, s.
+    /// Rate of the lift, deg/s.
     pub lift: f64,
+    /// Time at which the lift begins, s.
     pub from: f64,
-    /// Tilt at the beginning and at the end, deg.
+    /// Tilt before the lift, deg.
     pub begin: f64,
+    /// Tilt at which the lift ends, deg.
     pub end: f64,
     /// Direction of the head, relative to downhill, deg.
     pub head: f64,
@@ -95,7 +100,7 @@ pub fn studio() -> Studio {
     (studio.size, studio.focal) = ([640, 480], 0.85);
     (studio.height, studio.tilt, studio.direction) = (850.0, 12.0, 90.0);
     (studio.roll, studio.aim) = (0.0, [0.0; 2]);
-    // A robot that stands askew needs more room.
+    // A robot that is not aligned with the strips needs more room between them.
     studio.strips = [[5.0, -180.0, 0.03], [-5.0, 180.0, PI - 0.02]];
     studio.shutter = 1.0 / 250.0;
     studio

@@ -1,4 +1,4 @@
-//! One walk filmed by many cameras: each differs from a good one in a single property.
+//! One walk filmed by many cameras: each differs from a good one in one or two properties.
 
 use fastrand::Rng;
 use lizard_film::Film;
@@ -19,7 +19,7 @@ struct Camera {
     studio: Studio,
     /// Pictures per second.
     rate: f64,
-    /// Standard deviation of the hand's position, mm; that of its angles is a tenth of it, deg.
+    /// Standard deviation of the hand's position, mm; the standard deviation of its angles is a tenth of it, deg.
     shake: f64,
 }
 

@@ -1,5 +1,5 @@
-//! A renderer: makes the picture of the sheet and the robot that a camera would take, with everything that degrades a
-//! real one.
+//! A renderer: makes the picture of the sheet and the robot that a camera would take, with noise, blur, distortion
+//! and uneven light.
 //!
 //! It shares only the design of the sheet with the tested code: its camera follows rays and uses no matrices.
 
@@ -14,17 +14,21 @@ type Vector = [f64; 3];
 
 const BLACK: f64 = 35.0;
 const PAPER: f64 = 205.0;
-/// Half width and half length of the robot, mm; below, its grey and its height.
+/// Half width and half length of the robot, mm.
 const BODY: [f64; 2] = [75.0, 105.0];
+/// Grey of the robot's top.
 const BODY_GREY: f64 = 70.0;
+/// Height of the robot's top, mm.
 const BODY_HEIGHT: f64 = 55.0;
-/// Edge about which a board is tilted, mm; its other end is lifted.
+/// x coordinate of the edge about which the board is tilted, mm.
 const EDGE: f64 = -200.0;
-/// Samples of a pixel in each direction; below, samples of the time that the shutter is open.
+/// Samples of a pixel in each direction.
 const SAMPLES: usize = 3;
+/// Samples of the time for which the shutter is open.
 const TIMES: usize = 3;
-/// Number of random numbers for the noise; below, the number of successive pixels that use them in sequence.
+/// Number of random numbers for the noise.
 const NOISES: usize = 1 << 16;
+/// Number of successive pixels that use these random numbers in sequence.
 const IN_A_ROW: usize = 64;
 
 /// The scene: the floor, the sheet and the camera.
@@ -35,10 +39,13 @@ pub struct Studio {
     pub focal: f64,
     /// Distortion of the lens: the share by which it moves a point that is as far from the axis as the focal length.
     pub lens: f64,
-    /// Height of the camera above the middle of the scene, mm; below, its tilt, direction and roll, deg.
+    /// Height of the camera above the middle of the scene, mm.
     pub height: f64,
+    /// Tilt of the camera's axis from straight down, deg.
     pub tilt: f64,
+    /// Direction of the camera's axis on the floor, counter-clockwise from x, deg.
     pub direction: f64,
+    /// Roll of the camera about its axis, deg.
     pub roll: f64,
     /// The point of the floor on the camera's axis, mm.
     pub aim: [f64; 2],
@@ -46,9 +53,9 @@ pub struct Studio {
     pub board: f64,
     /// Places of the strips' middles.
     pub strips: [Spot; 2],
-    /// Printed mm per mm, along and across.
+    /// Printed mm per designed mm, along a strip and across it.
     pub print: [f64; 2],
-    /// Scale of the distance between a strip's tags alone.
+    /// Factor of the distance between a strip's tags; other than 1 if the strip was cut apart.
     pub cut: f64,
     /// Height of the deck tag, mm.
     pub deck: f64,
@@ -56,15 +63,17 @@ pub struct Studio {
     pub hidden: Vec<usize>,
     /// Round objects or reflections on the floor: x, y, radius, mm, and their grey.
     pub discs: Vec<[f64; 4]>,
-    /// Exposure time, s; below, the time from the first row to the last one, s.
+    /// Exposure time, s.
     pub shutter: f64,
+    /// Time from the first row to the last one, s.
     pub readout: f64,
     /// Light, as a share of normal light.
     pub light: f64,
     /// Standard deviation of the noise, grey levels.
     pub noise: f64,
-    /// Grey of the floor; below, the loss of light from one corner of the picture to the opposite one.
+    /// Grey of the floor.
     pub floor: f64,
+    /// Loss of light from one corner of the picture to the opposite one, as a share.
     pub shade: f64,
 }
 
@@ -136,7 +145,7 @@ impl Studio {
         }
     }
 
-    /// The camera's position, and its axes: right, down, ahead.
+    /// The camera's position and its axes (right, down, ahead), in the frame of the tilted board.
     fn camera(&self) -> (Vector, [Vector; 3]) {
         let (tilt, direction) = (self.tilt.to_radians(), self.direction.to_radians());
         let lean = [tilt.sin() * direction.cos(), tilt.sin() * direction.sin()];
@@ -158,7 +167,7 @@ impl Studio {
         ([x + EDGE, y, z], axes)
     }
 
-    /// Converts a direction from the frame of the room to that of the tilted board.
+    /// Converts a direction from the frame of the room to the frame of the tilted board.
     fn on_board(&self, [x, y, z]: Vector) -> Vector {
         let (sin, cos) = self.board.to_radians().sin_cos();
         [x * cos + z * sin, y, z * cos - x * sin]
@@ -250,7 +259,7 @@ pub struct Background {
     studio: Studio,
     view: View,
     light: Vec<f32>,
-    /// Random numbers for the noise; each row of some pixels begins at another index.
+    /// Random numbers for the noise; each run of successive pixels begins at another index.
     noise: Vec<f32>,
 }
 
@@ -263,7 +272,7 @@ struct View {
 }
 
 impl View {
-    /// The point at a height that a pixel shows: its ray, followed to that height.
+    /// The point at a height that a pixel shows: the intersection of the pixel's ray with the plane at that height.
     fn meet(&self, [x, y]: [f64; 2], height: f64) -> [f64; 2] {
         let bent = [
             (x - self.middle[0]) / self.focal,
@@ -351,7 +360,7 @@ impl Background {
         Picture::new(width, height, grey).expect("all rows")
     }
 
-    /// Calls a function for every pixel around a part of the robot.
+    /// Calls a function for every pixel around a part of the robot, with the pixel's index and its column and row.
     fn each_pixel(
         &self,
         Turned([x, y], [cos, sin]): Turned,

@@ -6,8 +6,9 @@ use lizard_film::orders::{Order, PAUSE, orders};
 
 use super::render::Studio;
 
-/// Time of a frame of the firmware, s; below, the step of the simulation, s.
+/// Duration of a frame of the firmware, s.
 const FRAME: f64 = 0.02;
+/// Time step of the simulation, s.
 const STEP: f64 = 0.0005;
 /// Frames that a move to a pose takes.
 const MOVE: usize = 8;
@@ -66,7 +67,8 @@ impl Servo {
         self.begin + PAUSE * orders(1.0).len() as f64
     }
 
-    /// The angles of the card, deg, at every [`STEP`] from time 0, with orders to the side `way`.
+    /// Simulates the card's angles, deg, at every [`STEP`] from time 0. The orders are counter-clockwise from
+    /// neutral if `way` is 1, clockwise if it is -1.
     pub fn turns(&self, way: f64) -> Turning {
         let orders = orders(way);
         let pulses = self.pulses(&orders);

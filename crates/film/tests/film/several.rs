@@ -9,7 +9,7 @@ use crate::walk::{Show, Varies, gait, truth};
 
 /// Pictures per second.
 const RATE: f64 = 8.0;
-/// A robot whose cycles vary a little, as those of real robots do.
+/// A small variation of the cycles, as real robots have it.
 const VARIES: Varies = Varies {
     cycle: [0.2, 0.2, 0.004],
     clock: 0.0,
@@ -73,7 +73,7 @@ fn each_gait_of_a_film_is_found_between_its_rests_and_measured() {
     let both = Measured::together(&[one.clone(), other.clone()], &gaits[0]);
     check_result(&both, &gaits[0]);
     assert_eq!(both.cycles, [&one.cycles[..], &other.cycles[..]].concat());
-    // A wrong order of the gaits is reported and not accepted.
+    // A gait that is not the one of this walk is refused.
     let wrong = watched
         .measure(&gaits[2], Some(walks[1]))
         .expect_err("it is left");
@@ -123,7 +123,8 @@ fn gaits_without_a_rest_between_them_are_not_mixed() {
         assert_eq!(walks.len(), 1);
         for gait in [first, second] {
             match watched.measure(gait, Some(walks[0])) {
-                // A result must be that of this gait alone: the gait that moves farther can be told from the other.
+                // A result must be for this gait alone: the gait that moves farther can be distinguished from the
+                // other.
                 Ok(measured) => check_result(&measured, gait),
                 Err(trouble) => assert!(
                     matches!(
@@ -160,7 +161,8 @@ fn a_robot_that_turns_its_head_between_walks_has_not_walked() {
     assert_eq!(watched.walks(rest(&[walk])).len(), 1);
 }
 
-/// The largest difference within a cycle: its phase, its axis and its size in standard errors.
+/// The largest deviation from the predicted path within a cycle: its phase, its axis and its size in standard
+/// errors.
 fn farthest(measured: &Measured) -> (f64, usize, f64) {
     let all = measured.within.iter().flat_map(|point| {
         let differs = point.differs().map(f64::abs);

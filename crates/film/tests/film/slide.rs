@@ -11,7 +11,7 @@ const SETUP: Setup = Setup {
     height: 83.0,
 };
 
-/// Films a board.
+/// Films a board while it is lifted.
 fn film(board: &Board, studio: &Studio, rate: f64) -> Film {
     let mut film = Film::default();
     board.pictures(studio, rate, |seconds, picture| {

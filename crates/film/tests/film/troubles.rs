@@ -7,7 +7,7 @@ use crate::render::{Spot, Studio};
 use crate::studio::{TRUE_SIZE, film_of, small};
 use crate::walk::{Varies, Walk, gait, truth};
 
-/// Pictures per second: few, because only the reason counts.
+/// Pictures per second: few suffice, since the tests check only the reason.
 const RATE: f64 = 8.0;
 
 fn studio() -> Studio {
@@ -121,7 +121,8 @@ fn pictures_of_another_size_and_times_that_do_not_rise_are_refused() {
     );
 }
 
-/// A film in which the camera moves to another place in the middle.
+/// A film in the middle of which the camera moves to another place. In its second half, the tags `hidden` are
+/// covered.
 fn pushed(hidden: Vec<usize>) -> Film {
     let gait = gait("walk");
     let walk = walk(&gait, 5);
@@ -317,7 +318,7 @@ fn a_film_whose_rate_is_off_by_some_percent_shows_the_way_of_a_cycle_and_its_tim
     }
 }
 
-/// A picture of the sheet and the card, with either a second copy of the same or nothing to the right of it.
+/// A picture of the sheet and the card; to its right, a second copy of it if `is_twice`, else an empty area.
 fn doubled(is_twice: bool) -> Picture {
     let mut rng = Rng::with_seed(2);
     let picture = studio()

@@ -76,7 +76,7 @@ fn any(rng: &mut Rng) -> Servo {
     }
 }
 
-/// Compares figures with their true values: returns the share of those that are off by two errors at most, and the
+/// Compares figures with their true values: returns the share of figures within two errors of the truth, and the
 /// mean error.
 fn judged(figures: &[(Figure, f64)]) -> [f64; 2] {
     let within = figures
@@ -136,7 +136,7 @@ fn a_load_on_a_drum_tells_the_torque_at_a_stall() {
     for _ in 0..30 {
         let [free, loaded] = films(&mut rng);
         let stall = free.stall(&loaded, 19.6).expect("a stall");
-        // The motor's line ends at a torque that friction reduces.
+        // Friction reduces the torque at which the motor's torque-speed line ends.
         stalls.push((stall, 19.6 / LOAD * (1.0 - FRICTION)));
         assert_eq!(loaded.stall(&free, 19.6), Err(TurnsTrouble::Swapped));
     }

@@ -47,7 +47,7 @@ pub struct Walk {
     gait: Gait,
     period: f64,
     begins: Vec<Place>,
-    /// The deviation of each cycle from the gait, from its begin to its end: mm, mm, rad.
+    /// The deviation of each cycle from the gait, at even intervals from its beginning to its end: mm, mm, rad.
     extras: Vec<[[f64; 3]; PARTS + 1]>,
 }
 
@@ -121,7 +121,7 @@ impl Walk {
     }
 }
 
-/// Walks one after another, each from where the one before ended, with rests between them.
+/// Consecutive walks, each starting where the previous one ended, with rests between them.
 pub struct Show {
     /// Each walk, and the time at which its first rest begins, s.
     walks: Vec<(f64, Walk)>,
@@ -129,7 +129,7 @@ pub struct Show {
 }
 
 impl Show {
-    /// Walks of so many cycles of gaits. Between two of them the robot rests for `rest` seconds.
+    /// Makes walks, each of a gait and a number of cycles. Between two walks the robot rests for `rest` seconds.
     pub fn new(
         start: Spot,
         walks: &[(&Gait, usize)],
@@ -175,7 +175,7 @@ impl Show {
     }
 }
 
-/// The true way of a cycle.
+/// The true displacement of a cycle.
 pub fn truth(gait: &Gait) -> Travel {
     gait.path[gait.path.len() - 1].travel()
 }
@@ -188,7 +188,7 @@ fn place([forward, left, heading]: [f64; 3]) -> Place {
     }
 }
 
-/// Converts a place that is seen from another one to a place on the floor.
+/// Converts a place relative to `from` to a place on the floor.
 fn then(from: Place, seen: Place) -> Place {
     let [forward, left] = from.on_floor([seen.forward, seen.left]);
     place([forward, left, from.heading + seen.heading])

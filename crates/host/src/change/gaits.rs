@@ -123,12 +123,12 @@ struct GaitLine<'a> {
     leg: LeastMargin,
     /// Smallest and largest slider travel from nominal, mm.
     stroke: [f64; 2],
-    /// Displacement of one cycle, mm and deg counter-clockwise; null for a value that depends on a tie of two feet
-    /// against two.
+    /// Displacement of one cycle with ideal servos, mm and deg counter-clockwise. A value is null if the contact
+    /// model cannot decide it, since two feet pull against two with equal force.
     predicted: Predicted,
     /// Largest used share of a servo's torque-speed line.
     line: f64,
-    /// The same displacement, limited by the servos of robot.toml.
+    /// Displacement of one cycle with the servos of robot.toml, in the form of `predicted`.
     by_servos: Predicted,
 }
 
@@ -155,8 +155,9 @@ struct RoutineLine<'a> {
     repeat: Option<u16>,
     /// Duration of one round that starts from standing, s.
     seconds: f64,
-    /// Displacement of one round, in the same form as that of a gait.
+    /// Displacement of one round with ideal servos, in the form of [`GaitLine::predicted`].
     predicted: Predicted,
+    /// Displacement of one round with the servos of robot.toml.
     by_servos: Predicted,
 }
 

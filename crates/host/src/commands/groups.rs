@@ -1,7 +1,7 @@
 //! The list of commands, grouped by purpose.
 //!
-//! Many commands in one list hide the five that the owner of a robot needs. So `lizard
-//! help` puts them under headings, and lists those for scripts by name only.
+//! Many commands in one list hide the five that the owner of a robot needs. So `lizard help` puts them under
+//! headings, and lists the commands for scripts by name only.
 
 use std::fmt::Write as _;
 

@@ -18,7 +18,7 @@ pub(super) enum Group {
 }
 
 impl Group {
-    /// All groups in the order of the help; those for owners of a robot come first.
+    /// All groups in the order of the help; the groups for owners of a robot come first.
     pub(super) const ALL: [Self; 6] = [
         Self::Drive,
         Self::Simulate,

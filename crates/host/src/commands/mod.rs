@@ -198,7 +198,7 @@ pub fn program() -> clap::Command {
     groups::grouped(Cli::command().after_help(addresses), KNOWN)
 }
 
-/// Lists the project's addresses for the end of the help, without those that are empty.
+/// Lists the project's addresses for the end of the help, and leaves out empty ones.
 fn addresses(page: &str, source: &str) -> String {
     let lines = [
         ("Page", page, ""),

@@ -1,7 +1,8 @@
 //! Commands with subcommands, such as `lizard calibrate backup`.
 //!
-//! A command becomes a subcommand if it does to a file what another one does to a board, or measures what another one
-//! runs. So the list of commands stays short. The modules of the commands do not know about this.
+//! Related commands share one entry in the list of commands: `flash image` writes to a file what `flash` writes to
+//! a board, and `sim bench` measures the firmware that `sim` runs. The commands' own modules do not depend on the
+//! nesting.
 
 use clap::{Args, Subcommand};
 

@@ -21,12 +21,13 @@ pub struct Args {
     json: bool,
 }
 
-/// A serial port, with the names of `--json`.
+/// A serial port, with the field names of `--json`.
 #[derive(Debug, Serialize)]
 struct Line {
     port: String,
-    /// Four hexadecimal digits, as lsusb prints them.
+    /// The USB vendor number as four hexadecimal digits, as lsusb prints it.
     vendor: String,
+    /// The USB product number as four hexadecimal digits.
     product: String,
     /// The product name that the chip reports.
     name: Option<String>,
@@ -51,7 +52,7 @@ impl Line {
     }
 }
 
-/// Description of a chip by its USB numbers: vendor and product.
+/// Description of a chip by its USB numbers, vendor and product; `None` if the chip is not known.
 fn chip(ids: [u16; 2]) -> Option<&'static str> {
     Some(match ids {
         [vendor, 0x0001 | 0x0043 | 0x0243] if find::ARDUINO.contains(&vendor) => "an Arduino UNO",

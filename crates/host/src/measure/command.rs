@@ -58,8 +58,8 @@ pub struct Args {
 /// Measures films and prints the result.
 ///
 /// # Errors
-/// Fails for a gait that the robot does not have, a film that cannot be read, or one that does not show
-/// what is needed.
+/// Fails for a gait that the robot does not have or that moves no servo, a film that cannot be read or shows no
+/// measurable gait, several films with `--csv`, or a file that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let pace = f64::from(args.speed) / 100.0;
@@ -89,7 +89,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
     json::print_json_or(args.json, &report, || report.text())
 }
 
-/// The gait of this name, if it moves a servo.
+/// Finds the gait of this name.
+///
+/// # Errors
+/// Fails if the robot has no such gait, or if the gait moves no servo.
 fn find<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failure> {
     match robot.gait(name) {
         Some(gait) if gait.moves() => Ok(gait),

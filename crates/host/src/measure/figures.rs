@@ -49,7 +49,7 @@ impl Key {
         }
     }
 
-    /// Returns the key with this ratio of its value in robot.toml to that for the supply of the measurement.
+    /// Sets the ratio of the key's value in robot.toml to its value for the supply of the measurement.
     pub(super) fn scaled(self, scale: f64) -> Self {
         Self { scale, ..self }
     }
@@ -75,7 +75,7 @@ pub(super) fn table(keys: &[Key]) -> String {
     text
 }
 
-/// The lines for robot.toml.
+/// The measured keys as lines for robot.toml.
 pub(super) fn lines(keys: &[Key]) -> String {
     let mut text = String::new();
     let mut table = "";

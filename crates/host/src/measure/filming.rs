@@ -8,7 +8,7 @@ use lizard_measure::WatchedFilm;
 use super::film;
 use crate::Failure;
 
-/// Range in which a printer may scale the ruler of 100 mm, mm.
+/// Range of lengths that the printed ruler of 100 mm may have, mm.
 const RULER: [f64; 2] = [85.0, 115.0];
 
 /// How films were taken.
@@ -40,6 +40,7 @@ impl Filming {
     }
 }
 
+/// Parses a number in a range. The error says `meaning` and the range.
 pub(super) fn number(word: &str, [low, high]: [f64; 2], meaning: &str) -> Result<f64, String> {
     let number = word
         .parse()

@@ -11,7 +11,7 @@ const ENDS: [&str; 3] = ["png", "jpg", "jpeg"];
 /// The pictures of a folder in the order of the numbers in their names, each with its time, s.
 ///
 /// # Errors
-/// Fails without pictures, or if neither the rate nor the names give the times.
+/// Fails if the folder cannot be read or has no pictures, or if neither `rate` nor the names give the times.
 pub(super) fn of_folder(folder: &Path, rate: Option<f64>) -> Result<Vec<(f64, PathBuf)>, Failure> {
     let cannot = |error: std::io::Error| {
         Failure::Input(format!("cannot read {}: {error}", folder.display()))
@@ -54,7 +54,7 @@ fn stem(path: &Path) -> String {
         .into_owned()
 }
 
-/// A sort key for names: words and numbers, so that 10 comes after 9.
+/// A sort key for names: their words and numbers, so that 10 comes after 9.
 fn in_order(name: &str) -> Vec<(u64, String)> {
     let mut parts: Vec<(u64, String)> = Vec::new();
     let mut was_digit = None;
@@ -73,7 +73,8 @@ fn in_order(name: &str) -> Vec<(u64, String)> {
     parts
 }
 
-/// The time at the end of a name, such as `walk-1.033s` or `walk-1033ms`, s.
+/// The time at the end of a name such as `walk-1.033s` or `walk-1033ms`, s; `None` if the name does not end with a
+/// number and its unit.
 fn seconds(stem: &str) -> Option<f64> {
     let (number, unit) = match stem.strip_suffix("ms") {
         Some(number) => (number, 1e-3),

@@ -13,7 +13,7 @@ use crate::shared::json;
 use crate::shared::progress::Spinner;
 use crate::{Failure, RobotFile};
 
-/// Largest difference between cycle times at which two robot.toml count as the same, s.
+/// Largest difference between a gait's cycle times in two robot.toml files that count as the same robot, s.
 const SAME_PERIOD: f64 = 0.005;
 
 /// Find the keys of robot.toml with which the model goes as far as the robot did
@@ -42,24 +42,26 @@ pub struct KeysArgs {
     robot: RobotFile,
 }
 
-/// The part of the output of `lizard measure --json` that is used here.
+/// The fields of the output of `lizard measure --json` that identification needs.
 #[derive(Deserialize)]
 struct Output {
     gaits: Vec<Measured>,
 }
 
+/// The measured movement of a gait in a cycle.
 #[derive(Deserialize)]
 struct Measured {
     gait: String,
     /// Speed, percent.
     speed: f64,
-    /// Cycle time by the robot.toml of that run, s.
+    /// Cycle time by the robot.toml with which the gait was measured, s.
     period_expected: Option<f64>,
     forward: Part,
     left: Part,
     turn: Part,
 }
 
+/// A component of a movement: its mean and the standard error of the mean, mm or deg.
 #[derive(Deserialize)]
 struct Part {
     mean: f64,
@@ -69,8 +71,8 @@ struct Part {
 /// Finds the keys, prints them, and writes the new robot.toml.
 ///
 /// # Errors
-/// Fails for files that are not from `lizard measure`, or are from another robot; for gaits that determine no key;
-/// if the output would replace something, or cannot be written.
+/// Fails if a file is not from `lizard measure` or is from another robot, if the gaits determine no key, or if the
+/// output would replace something or cannot be written.
 pub fn find_keys(args: KeysArgs) -> Result<(), Failure> {
     let before = args.robot.text()?;
     let robot = args.robot.load()?;
@@ -111,7 +113,10 @@ fn read(path: &Path, robot: &Robot) -> Result<Vec<MeasuredMovement>, Failure> {
     ways.collect::<Result<_, _>>().map_err(about)
 }
 
-/// The distances per cycle of a measured gait, if it was measured with this robot.toml.
+/// The movement per cycle of a measured gait.
+///
+/// # Errors
+/// Fails if the gait was measured with a robot.toml that gives it another cycle time.
 fn measured_motion(measured: &Measured, robot: &Robot) -> Result<MeasuredMovement, String> {
     let Measured { gait, speed, .. } = measured;
     let pace = speed / 100.0;

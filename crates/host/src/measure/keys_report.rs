@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use lizard_identify::{Card, Found, Goodness, Identified, PARTS, Row, Verdict};
 use serde::Serialize;
 
-/// The result, with the names of `--json`.
+/// The result, with the field names of `--json`.
 #[derive(Serialize)]
 pub(super) struct KeysReport {
     keys: Vec<KeyLine>,
@@ -49,8 +49,8 @@ struct FitLine {
     errors_widened: f64,
 }
 
-/// A gait: measured values, their standard errors (null if the model predicts none), and the predictions by the
-/// file and with the new values; mm, mm, deg.
+/// A gait: measured values, their standard errors (null if the model predicts none), and the predictions with the
+/// given and the new robot.toml; ahead and left in mm, turn in deg.
 #[derive(Serialize)]
 struct GaitLine {
     gait: String,
@@ -204,7 +204,7 @@ fn key_line(found: &Found) -> String {
     )
 }
 
-/// The part of the text that tells how well the model explains the measurements.
+/// A paragraph about how well the model explains the measurements.
 fn goodness(identified: &Identified) -> String {
     let Goodness {
         figures,

@@ -1,5 +1,5 @@
-//! Measure the real robot in films: the ways of gaits, the keys of robot.toml that ways tell, a servo in a jig, friction
-//! on a slope; and the sheet of tags that they show.
+//! Measurements of the real robot in films: the movement per cycle of gaits, the keys of robot.toml identified from
+//! such movements, a servo in a jig, and friction on a slope; and the sheet of tags that the films must show.
 
 mod command;
 mod figures;

@@ -10,17 +10,23 @@ use crate::shared::ink::{
 use crate::shared::plot::{Axis, Plot, draw_entry};
 
 const WIDTH: f64 = 1000.0;
-/// Height of the title with the key below it, and of a gait's row, px.
+/// Height of the title with the legend below it, px.
 const TOP: f64 = 110.0;
+/// Height of a gait's row, px.
 const ROW: f64 = 360.0;
-/// Left edges, width and height of the panels, px.
+/// Left edge of the panel with the path, px.
 const PATH: f64 = 90.0;
+/// Left edge of the panel with the bars, px.
 const BARS: f64 = 640.0;
+/// Width of the panel with the path, px.
 const PATH_WIDTH: f64 = 460.0;
+/// Width of the panel with the bars, px.
 const BARS_WIDTH: f64 = 330.0;
+/// Height of each panel, px.
 const PANEL: f64 = 220.0;
-/// Colours of measured and predicted values.
+/// Colour of measured values.
 const MEASURED: &str = SERVO[0];
+/// Colour of predicted values.
 const PREDICTED: &str = GREY;
 /// Half the length of an error bar, in standard errors.
 const ERRORS: f64 = 2.0;
@@ -125,11 +131,12 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
         x: (0.5, 0.5 + parts.len() as f64),
         y: (low - margin, high + margin),
     };
-    // No ticks below the bars: their names stand there.
+    // The step is longer than the axis, so no ticks are drawn; the names of the bars are below the axis.
     let across = Axis::new(10.0, "");
     let value = Axis::new(step(high - low + 2.0 * margin), "");
     let mut group = plot.draw_grid(group, &across, &value);
     for (i, part) in parts.into_iter().enumerate() {
+        // Each component has a slot of width 1, with the measured bar to the left of the predicted one.
         let at = 0.5 + i as f64;
         let bar = |from: f64, value: f64, colour: &str| {
             let (left, top) = plot.at(at + from, value.max(0.0));
@@ -172,7 +179,7 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
     plot.draw_axes(group, &across, &value)
 }
 
-/// A distance of ticks that gives four to ten of them: 1, 2 or 5 times a power of ten.
+/// Distance between ticks for which `range` has four to ten of them: 1, 2 or 5 times a power of ten.
 fn step(range: f64) -> f64 {
     let rough = range / 4.0;
     let power = 10f64.powf(rough.log10().floor());

@@ -76,14 +76,15 @@ fn volts(word: &str) -> Result<f64, String> {
     number(word, [2.0, 9.0], "it is V")
 }
 
-/// The result, with the names of `--json`.
+/// The result, with the field names of `--json`.
 #[derive(Serialize)]
 struct Report {
     servo: &'static str,
     /// Pictures per second.
     pictures: f64,
-    /// Height of the card above the strips, mm: as given, and as estimated from its size in the pictures.
+    /// Height of the card above the strips as given, mm.
     height: f64,
+    /// Height of the card above the strips as estimated from its size in the pictures, mm.
     height_by_size: f64,
     figures: Vec<Key>,
     /// Rates counter-clockwise and clockwise with their errors, deg/s.
@@ -95,10 +96,11 @@ struct Report {
     is_spin_up_known: bool,
     is_dead_band_known: bool,
     turns_the_other_way: bool,
-    /// Supply for which the figures hold, V; true if it was measured.
+    /// Supply for which the figures hold, V.
     volts: f64,
+    /// True if the supply was measured, false if it is that of robot.toml.
     is_volts_measured: bool,
-    /// The file of the new robot.toml.
+    /// The file of the new robot.toml; null without `--output`.
     written: Option<PathBuf>,
     /// Slew limit of the jig's robot.toml, deg/s.
     #[serde(skip)]
@@ -108,7 +110,7 @@ struct Report {
 /// Measures a servo and prints the result.
 ///
 /// # Errors
-/// Fails for a film that cannot be read, or one that does not show what is needed.
+/// Fails for a film that cannot be read or does not show the steps of the servo, or a file that cannot be written.
 pub fn measure_servo(args: ServoArgs) -> Result<(), Failure> {
     let text = args.robot.text()?;
     let robot = args.robot.load()?;
@@ -226,7 +228,8 @@ impl Report {
         }
     }
 
-    /// The text of robot.toml with the keys that the film contradicts replaced, and the supply if it was measured.
+    /// Returns the text of robot.toml in which the keys that the film contradicts are replaced, and the supply if it
+    /// was measured.
     fn new_robot(&self, text: &str) -> Result<String, Failure> {
         let refused = |error: &dyn Display| Failure::Input(error.to_string());
         let mut new =

@@ -39,7 +39,7 @@ pub struct SlopeArgs {
     robot: RobotFile,
 }
 
-/// The result, with the names of `--json`.
+/// The result, with the field names of `--json`.
 #[derive(Serialize)]
 struct Report {
     films: Vec<Line>,
@@ -53,15 +53,16 @@ struct Line {
     is_head_first: bool,
     /// Tilt at which the slide begins, deg.
     tilt: [f64; 2],
-    /// Coefficients of static and of sliding friction.
+    /// Coefficient of static friction.
     resting: [f64; 2],
+    /// Coefficient of sliding friction.
     sliding: [f64; 2],
 }
 
 /// Measures slides and prints the result.
 ///
 /// # Errors
-/// Fails for a film that cannot be read, or one that does not show what is needed.
+/// Fails for a film that cannot be read or shows no slide.
 pub fn measure_slope(args: SlopeArgs) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let height = args.height.unwrap_or_else(|| height_of_board(&robot));
@@ -82,7 +83,7 @@ pub fn measure_slope(args: SlopeArgs) -> Result<(), Failure> {
     json::print_json_or(args.json, &report, || report.text())
 }
 
-/// The mean of figures that share a systematic error, such as that of the level; `None` if there are none.
+/// The mean of figures that share a systematic error, such as that of the level; `None` if `figures` is empty.
 fn mean(figures: &[Figure]) -> Option<Figure> {
     let count = figures.len() as f64;
     let mean = |part: &dyn Fn(&Figure) -> f64| figures.iter().map(part).sum::<f64>() / count;

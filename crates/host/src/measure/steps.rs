@@ -44,7 +44,7 @@ pub(super) fn servo(word: &str) -> Result<usize, String> {
     found.ok_or_else(|| "it is A1, A2, A3 or A4".to_owned())
 }
 
-/// Prints the lines.
+/// Prints the console lines, each at its time unless `--list` is given.
 ///
 /// # Errors
 /// Fails if the robot's slew limit is too low, if its servo cannot make all steps, or if standard output is closed.
@@ -63,7 +63,7 @@ pub fn print_steps(args: StepsArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Checks that the slew limit is higher than the rate of a servo.
+/// Checks that the slew limit is at least [`SLEW`], so that it does not slow a servo down.
 pub(super) fn check_slew(robot: &Robot) -> Result<(), Failure> {
     let slew = robot.pace().slew;
     if slew < SLEW {
@@ -98,18 +98,23 @@ fn lines(robot: &Robot, servo: usize) -> Result<Vec<(String, f64)>, Failure> {
     Ok(lines)
 }
 
+/// The neutral angles of all servos, but with one servo turned by `sweep` from neutral, deg.
 fn angles(robot: &Robot, servo: usize, sweep: f64) -> [f64; 4] {
     let mut angles = robot.servos().map(|servo| servo.neutral);
     angles[servo] += sweep;
     angles
 }
 
+/// The console line for the pose with one servo turned by `sweep` from neutral, deg.
 fn pose(robot: &Robot, servo: usize, sweep: f64) -> String {
     let [a, b, c, d] = angles(robot, servo, sweep).map(|angle| format!("{angle:.2}"));
     format!("pose {a} {b} {c} {d}")
 }
 
 /// The direction from neutral in which the linkage allows all steps of a servo: 1 counter-clockwise, -1 clockwise.
+///
+/// # Errors
+/// Fails if neither direction is free.
 pub(super) fn free_direction(robot: &Robot, servo: usize) -> Result<f64, Failure> {
     let is_free = |way: &f64| {
         orders(*way).iter().all(|order| {

@@ -12,7 +12,7 @@ use lizard_film::Picture;
 
 use crate::Failure;
 
-/// Arguments of ffmpeg after the file's name: one grey picture for each one of the film.
+/// Arguments of ffmpeg after the file's name: a grey picture for each picture of the film.
 const PICTURES: &str = "-fps_mode passthrough -f yuv4mpegpipe -pix_fmt gray -strict -1 -";
 /// Arguments of ffprobe before the file's name: the times of the pictures.
 const TIMES: &str =
@@ -23,7 +23,7 @@ const LARGEST: usize = 10_000;
 /// Calls a function for each picture of a film with its time, s.
 ///
 /// # Errors
-/// Fails if a program is missing, for a film that they cannot read, or if the function fails.
+/// Fails if ffmpeg or ffprobe is missing or cannot read the film, or if the function fails.
 pub(super) fn each(
     film: &Path,
     rate: Option<f64>,
@@ -104,7 +104,7 @@ fn times(film: &Path) -> Result<Vec<f64>, Failure> {
     }
 }
 
-/// Width and height of a YUV4MPEG2 stream.
+/// Width and height of a YUV4MPEG2 stream, from its header line; `None` if the header is invalid.
 fn size(header: &str) -> Option<[usize; 2]> {
     let fields = header.trim().strip_prefix("YUV4MPEG2 ")?;
     let field = |name: char| {

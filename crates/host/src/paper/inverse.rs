@@ -13,12 +13,14 @@ use crate::shared::number::tidy;
 struct Report {
     head: Option<Loop>,
     tail: Option<Loop>,
-    /// The pose with all elbows outward; an end without a point is at neutral.
+    /// The pose with all elbows outward, null if a point is out of reach. Head or tail is at neutral if its point is
+    /// not given.
     pose: Option<Angles>,
     safe: bool,
     why: Vec<String>,
 }
 
+/// The servo angles of a pose, degrees, chassis frame.
 #[derive(Serialize)]
 struct Angles {
     theta1: f64,
@@ -35,7 +37,7 @@ struct Loop {
     why: Option<String>,
 }
 
-/// The solution in one of the four working modes, left arm first.
+/// The solution in one of the four working modes (elbow of the left arm, elbow of the right arm).
 #[derive(Serialize)]
 struct ModeSolution {
     left: &'static str,
@@ -48,7 +50,7 @@ struct ModeSolution {
     theta_right: f64,
     /// Distance between the forward solution and the point, mm.
     error_mm: f64,
-    /// The smallest of the loop's margins.
+    /// The smallest margin of the five-bar.
     margin: f64,
     reachable: bool,
     why: Vec<String>,
@@ -73,6 +75,7 @@ pub fn print(robot: &Robot, ends: [Option<Vector>; 2], json: bool) -> Result<(),
     }
 }
 
+/// Solves the five-bar of head or tail for a point, in all working modes.
 fn solve(robot: &Robot, end: End, point: Vector) -> Loop {
     let local = robot.lizard().to_end(end, point);
     let (working_modes, reason) = match robot.lizard().end(end).inverse(local) {
@@ -89,6 +92,7 @@ fn solve(robot: &Robot, end: End, point: Vector) -> Loop {
     }
 }
 
+/// Checks an inverse solution: its error, its margin, and the reasons why the robot cannot take it.
 fn solve_mode(robot: &Robot, end: End, point: Vector, a: InverseSolution) -> ModeSolution {
     let bars = robot.lizard().end(end);
     let pose = bars.forward_in(a.assembly_mode, a.theta_left, a.theta_right);
@@ -135,7 +139,7 @@ fn elbow_text(elbow: Elbow) -> &'static str {
     }
 }
 
-/// Combines both ends and checks the complete pose.
+/// Combines the solutions of head and tail, and checks the pose that they give together.
 fn report(robot: &Robot, head: Option<Loop>, tail: Option<Loop>) -> Report {
     let mut angles = robot.servos().map(|servo| servo.neutral);
     let mut is_complete = true;
@@ -235,7 +239,7 @@ fn text(report: &Report) -> String {
     page
 }
 
-/// The text of an error in mm. All errors below 1e-9, from rounding, read the same.
+/// The text of an error in mm. Errors below 1e-9 come from rounding, so their values are not printed.
 fn format_mm_error(mm: f64) -> String {
     if mm < 1e-9 {
         "< 1e-9".to_string()

@@ -37,11 +37,13 @@ struct Mechanism {
     parts: &'static [(&'static [usize], &'static str)],
 }
 
+/// A joint between two links.
 struct Joint {
     links: [usize; 2],
     kind: Kind,
 }
 
+/// The kind of a joint and its place, in the pose that is examined.
 enum Kind {
     /// A pin at a point, mm.
     Revolute(Vector),
@@ -49,6 +51,7 @@ enum Kind {
     Prismatic(Vector, Vector),
 }
 
+/// The degrees of freedom of a mechanism, with the field names of `--json`.
 #[derive(Serialize)]
 struct Report {
     mechanism: &'static str,
@@ -63,12 +66,12 @@ struct Report {
     rank: usize,
     /// Columns minus rank.
     freedoms: usize,
-    /// The same with the driven cranks locked; 0 if nothing can move then.
+    /// Degrees of freedom with the driven cranks locked; 0 if no link can move then.
     locked_freedoms: usize,
     /// Messages for the parts that move while the cranks are locked.
     loose: Vec<&'static str>,
-    /// Smallest singular value divided by the largest, cranks locked; it approaches 0 at a
-    /// singularity.
+    /// Smallest singular value divided by the largest, for the Jacobian with the driven cranks locked; it approaches
+    /// 0 at a singularity.
     conditioning: f64,
 }
 

@@ -1,4 +1,4 @@
-//! A solved pose as `lizard pose` prints it.
+//! The output of `lizard pose` for one pose: a JSON object, a row of a table, or a page of text.
 
 use std::fmt::Write as _;
 
@@ -49,13 +49,14 @@ struct Leg {
     coupler: f64,
 }
 
-/// All margins by name.
+/// All margins, written as a map by name.
 struct Sines(Margins);
 
 impl Serialize for Sines {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
         for (check, value) in self.0.iter() {
+            // Adding 0.0 turns -0.0 into 0.0.
             map.serialize_entry(check.name(), &(value + 0.0))?;
         }
         map.end()
@@ -63,7 +64,7 @@ impl Serialize for Sines {
 }
 
 impl PoseLine {
-    /// The line of a pose, with or without a solution.
+    /// Makes the object of a pose, with or without a solution.
     pub fn new(robot: &Robot, seconds: Option<f64>, solved: &Result<Solution, Infeasible>) -> Self {
         let s = match solved {
             Ok(solution) => solution,
@@ -127,7 +128,7 @@ pub fn heading(has_time: bool) -> String {
     )
 }
 
-/// A pose in one line of a table.
+/// Formats a pose as one row of a table.
 pub fn row(robot: &Robot, timed: &Timed, solved: &Result<Solution, Infeasible>) -> String {
     let angles = <[f64; 4]>::from(timed.pose);
     let mut line = String::with_capacity(192);
@@ -169,7 +170,7 @@ pub fn row(robot: &Robot, timed: &Timed, solved: &Result<Solution, Infeasible>) 
     line
 }
 
-/// A pose as a page of text.
+/// Formats a pose as a page of text.
 pub fn page(robot: &Robot, pose: &Pose, solved: &Result<Solution, Infeasible>) -> String {
     let limits = robot.limits();
     let milli = |value: f64| tidy(value, 3);

@@ -8,7 +8,7 @@ use lizard_kinematics::Pose;
 use crate::Failure;
 use crate::shared::pose_args::{ANGLES, NumberFault, Quantity};
 
-/// A column that may accompany the angles, as in `lizard gaits --trace`.
+/// Name of a column that may accompany the angles, as in `lizard gaits --trace`.
 const SECONDS: &str = "seconds";
 
 /// The meaning of a field: one of the four angles, or a time.
@@ -49,7 +49,7 @@ const MAX_LINE_BYTES: u64 = 1024;
 /// A pose of the stream, with its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timed {
-    /// Time, s, if the stream has such a column.
+    /// Time, s; `None` if the stream has no column `seconds`.
     pub seconds: Option<f64>,
     /// The servo angles.
     pub pose: Pose,
@@ -124,7 +124,7 @@ impl<R: BufRead> Poses<R> {
         self.columns.contains(&Column::Seconds)
     }
 
-    /// Reads the next line that is not blank; returns false at the end.
+    /// Reads the next line that is not blank; returns false at the end of the input.
     fn advance(&mut self) -> Result<bool, Failure> {
         loop {
             self.line.clear();
@@ -147,6 +147,7 @@ impl<R: BufRead> Poses<R> {
         }
     }
 
+    /// The current line, without its line ending and without a byte order mark.
     fn text(&self) -> Result<&str, Failure> {
         std::str::from_utf8(&self.line)
             .map(|text| {
@@ -167,6 +168,7 @@ impl<R: BufRead> Poses<R> {
             })
     }
 
+    /// Parses the current line as a pose.
     fn parse(&self) -> Result<Timed, Failure> {
         let mut angles = [0.0; 4];
         let mut seconds = None;

@@ -11,7 +11,7 @@ use crate::shared::json;
 use crate::shared::number::tidy;
 use crate::shared::pose_args::ANGLES;
 
-/// The unknown rates, in the order of the columns of K*.
+/// Names of the passive joints and slider travels, in the order of the columns of K*.
 const PASSIVE: [&str; 8] = [
     "theta2",
     "theta3",
@@ -23,7 +23,7 @@ const PASSIVE: [&str; 8] = [
     "s_right",
 ];
 
-/// The loop equations, in the order of the rows of both matrices.
+/// Names of the loop equations, in the order of the rows of K and K*.
 const LOOPS: [&str; 8] = [
     "head x", "head y", "tail x", "tail y", "left x", "left y", "right x", "right y",
 ];
@@ -67,19 +67,24 @@ impl Matrix {
     }
 }
 
+/// The result, with the field names of `--json`.
 #[derive(Serialize)]
 struct Report {
     /// Derivatives with respect to the servo angles, mm per radian.
     k: Matrix,
     /// Derivatives with respect to the passive joints: mm per radian, and for s mm per mm.
     k_star: Matrix,
+    /// det K* by elimination.
     determinant: f64,
+    /// det K* as the product of the determinants of its diagonal blocks.
     factored: f64,
     blocks: Factors,
+    /// lg12 lg13 sin(theta_lg12 - theta_lg13) of each leg, in servo order.
     leg_determinants: [f64; 4],
     nearest: Vec<Nearest>,
 }
 
+/// The determinants of the diagonal blocks of K*.
 #[derive(Serialize)]
 struct Factors {
     head: f64,
@@ -94,7 +99,7 @@ struct Nearest {
     what: String,
     /// Distance in the servos' angles, degrees.
     distance: f64,
-    /// The turn of each servo to that pose, servo order, degrees.
+    /// Turn of each servo to the singular pose, in servo order, degrees.
     turn: [f64; 4],
 }
 
@@ -178,8 +183,8 @@ fn report(robot: &Robot, solution: &Solution) -> Report {
     }
 }
 
-/// The nearest singular crank angles of one kind, with their distance in degrees. Scans the singularity curves over
-/// all left crank angles, then refines the step around the best one.
+/// The singular crank angles of one kind that are nearest to `from`, with their distance in degrees; `None` if there
+/// are none. Scans the singularity curves over all left crank angles, then refines the step around the best one.
 pub fn nearest_of(
     bars: &FiveBar,
     kind: Singularity,

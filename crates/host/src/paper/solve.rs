@@ -45,8 +45,8 @@ fn solve_one(robot: &Robot, pose: &Pose, json: bool) -> Result<Vec<u8>, Failure>
     Ok(line)
 }
 
-/// Solves batches on all cores and writes them in order; one batch is written while the next is solved. Poses
-/// before a malformed line still get their complete lines.
+/// Solves batches on all cores and writes them in order; one batch is written while the next is solved. The
+/// poses before a malformed line are still solved and written.
 fn stream(robot: &Robot, json: bool) -> Result<(), Failure> {
     let mut poses = Poses::new(io::stdin().lock())?;
     let (solved, to_write) = mpsc::sync_channel::<Vec<u8>>(AHEAD);
@@ -112,6 +112,7 @@ fn solve_all(
     }
 }
 
+/// Solves poses and returns their lines, CSV or JSON.
 fn lines(robot: &Robot, poses: &[Timed], json: bool) -> Result<Vec<u8>, Failure> {
     let mut text = Vec::with_capacity(poses.len() * if json { 1024 } else { 192 });
     for timed in poses {

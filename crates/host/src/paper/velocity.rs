@@ -11,8 +11,8 @@ use crate::shared::pose_args::Quantity;
 /// Longest step of the finite differences for the comparison, s.
 const STEP: f64 = 2e-4;
 
-/// Largest turn of a servo in a step of the finite differences, deg. With a larger one the differences would belong
-/// to other poses.
+/// Largest turn of a servo in a step of the finite differences, deg. With a larger turn the differences would not
+/// hold for the pose that is examined.
 const SWEEP: f64 = 0.04;
 
 #[derive(clap::Args)]
@@ -69,7 +69,7 @@ impl From<DriveArgs> for Drive {
 /// Prints the rate and the acceleration of each passive joint.
 ///
 /// # Errors
-/// Fails for a pose in which rates are not defined, or an output that cannot be written.
+/// Fails for a type-2 singularity, at which the rates are not defined, or an output that cannot be written.
 pub fn print(
     lizard: &Lizard,
     solution: &Solution,
@@ -132,7 +132,7 @@ fn values(s: &Solution) -> [(&'static str, &'static str, f64); 12] {
     ]
 }
 
-/// Rates and accelerations in the same order.
+/// Rate and acceleration of each joint and coordinate, in the order of [`values`].
 fn rates(m: &Derivatives) -> [(f64, f64); 12] {
     let rate_and_acceleration = |d: lizard_kinematics::Derivative<f64>| (d.rate, d.acceleration);
     [
@@ -151,9 +151,11 @@ fn rates(m: &Derivatives) -> [(f64, f64); 12] {
     ]
 }
 
+/// Rates and accelerations in closed form, compared with finite differences of the poses around this one.
 fn rows(lizard: &Lizard, solution: &Solution, drive: &Drive) -> Vec<Row> {
     let start = <[f64; 4]>::from(solution.pose);
     let largest = |all: &[f64; 4]| all.iter().fold(0.0f64, |max, one| max.max(one.abs()));
+    // If the servos stand still, the quotients are infinite and do not limit the step.
     let step = STEP
         .min(SWEEP / largest(&drive.rate))
         .min((SWEEP / largest(&drive.acceleration)).sqrt());

@@ -5,8 +5,8 @@
 //! nameless files, and this file gets its final name at the end.
 //!
 //! An output replaces only an ordinary file. If it replaced a device such as /dev/null, this would affect every
-//! program of the machine. And an output replaces neither a robot's description nor an input of the same command:
-//! it is somebody's work, and a wrong name is typed easily.
+//! program of the machine. Nor does an output replace a robot's description or an input of the same command: both are
+//! somebody's work, and a wrong name is typed easily.
 
 use std::fs::{self, File, Permissions};
 use std::io::{self, ErrorKind, Read, Write};
@@ -28,7 +28,7 @@ pub fn note_input(path: &Path) -> &Path {
 /// Reads the text of an input.
 ///
 /// # Errors
-/// Fails if the file cannot be read, is not text, or does not end within 256 MiB, as a device may not.
+/// Fails if the file cannot be read, is not text, or is longer than 256 MiB, as an endless device is.
 pub fn read_text(path: &Path) -> Result<String, Failure> {
     const MAX_BYTES: u64 = 256 << 20;
     let mut text = String::new();
@@ -45,7 +45,7 @@ pub fn read_text(path: &Path) -> Result<String, Failure> {
 /// Checks that an output replaces neither an input nor a robot's description.
 ///
 /// # Errors
-/// Fails if the output would replace one of them.
+/// Fails if the output would replace an input or a robot's description.
 pub fn check_replaceable(path: &Path) -> Result<(), Failure> {
     let inputs = READ.lock().unwrap_or_else(PoisonError::into_inner);
     let is_input = |input: &PathBuf| same_file::is_same_file(input, path).unwrap_or(false);
@@ -62,7 +62,8 @@ pub fn check_replaceable(path: &Path) -> Result<(), Failure> {
     )))
 }
 
-/// True for a file that is named robot.toml or has the table `[links]` of a robot, even if the rest of it is wrong.
+/// True for a file that is named robot.toml or has the table `[links]` of a robot, even if the rest of the file is
+/// wrong.
 fn is_robot(path: &Path) -> bool {
     if !path.is_file() {
         return false;
@@ -108,6 +109,7 @@ pub fn write_failure(path: &Path, error: &io::Error) -> Failure {
     Failure::Impossible(format!("cannot write {}: {reason}", path.display()))
 }
 
+/// Creates the folders that contain a file.
 fn folders(path: &Path) -> io::Result<()> {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => fs::create_dir_all(folder),
@@ -115,6 +117,7 @@ fn folders(path: &Path) -> io::Result<()> {
     }
 }
 
+/// True for a character device or a named pipe.
 #[cfg(unix)]
 fn is_stream(path: &Path) -> bool {
     use std::os::unix::fs::FileTypeExt;
@@ -128,7 +131,7 @@ fn is_stream(_: &Path) -> bool {
     false
 }
 
-/// Follows the symbolic links of a path. Returns the file at the end, and its permissions if it exists.
+/// Follows the symbolic links of a path. Returns the path of the file itself, and its permissions if it exists.
 fn resolve(path: &Path) -> io::Result<(PathBuf, Option<Permissions>)> {
     match path.metadata() {
         Ok(there) if there.is_file() => Ok((path.canonicalize()?, Some(there.permissions()))),
@@ -141,6 +144,7 @@ fn resolve(path: &Path) -> io::Result<(PathBuf, Option<Permissions>)> {
     }
 }
 
+/// Writes the bytes to a nameless or a temporary file in the same folder, and then gives it the name `path`.
 fn persist(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let (path, permissions) = resolve(path)?;
     let folder = match path.parent() {
@@ -188,7 +192,7 @@ fn create_nameless(folder: &Path) -> Option<File> {
     use rustix::fs::{Mode, OFlags, open};
     let flags = OFlags::TMPFILE | OFlags::WRONLY | OFlags::CLOEXEC;
     let file = open(folder, flags, Mode::from_raw_mode(0o666)).ok()?;
-    // The file can be given a name only through this folder.
+    // A nameless file can be given a name only through /proc/self/fd.
     Path::new("/proc/self/fd").is_dir().then(|| file.into())
 }
 

@@ -7,7 +7,7 @@ use svg::{Document, Node};
 /// Colours of servos A1 to A4 and their legs: three of Okabe and Ito's colours and a purple of Tol's, which
 /// colour-blind people can tell apart, too.
 pub const SERVO: [&str; 4] = ["#0072b2", "#d55e00", "#009e73", "#aa4499"];
-/// Positions of the servos on the robot.
+/// Positions of servos A1 to A4 on the robot.
 pub const PLACES: [&str; 4] = ["front left", "front right", "back right", "back left"];
 /// The colour of text and axes.
 pub const DARK: &str = "#222222";
@@ -15,11 +15,11 @@ pub const DARK: &str = "#222222";
 pub const GREY: &str = "#666666";
 /// The colour of grid lines.
 pub const GRID: &str = "#dddddd";
-/// The signal wire of a servo. In grey, signal, +5 V and ground are light, medium and dark.
+/// The colour of a servo's signal wire. In grey print, the wires of signal, +5 V and ground are light, medium, dark.
 pub const ORANGE: &str = "#e8930c";
-/// The +5 V wire; see [`ORANGE`].
+/// The colour of the +5 V wire; see [`ORANGE`].
 pub const RED: &str = "#e5383b";
-/// The ground wire; see [`ORANGE`].
+/// The colour of the ground wire; see [`ORANGE`].
 pub const BROWN: &str = "#3d2210";
 /// The colour of the backgrounds of panels.
 pub const PANEL: &str = "#f7f7f7";
@@ -27,18 +27,18 @@ pub const PANEL: &str = "#f7f7f7";
 /// The fonts, in order of preference.
 const FONTS: &str = "Helvetica, Arial, 'DejaVu Sans', sans-serif";
 
-/// The part of a text that is placed at its point.
+/// The part of a text that lies at the point given for it.
 #[derive(Clone, Copy)]
 pub enum Anchor {
-    /// The text begins there.
+    /// The text begins at the point.
     Start,
-    /// The middle of the text is there.
+    /// The middle of the text is at the point.
     Middle,
-    /// The text ends there.
+    /// The text ends at the point.
     End,
 }
 
-/// A line of text; `y` is its base line.
+/// A line of text. `at` lies on its base line, at the part that `anchor` names.
 pub fn text(content: &str, at: (f64, f64), size: f64, colour: &str, anchor: Anchor) -> Text {
     let anchor = match anchor {
         Anchor::Start => "start",
@@ -69,7 +69,7 @@ pub fn text_end(content: &str, at: (f64, f64), size: f64) -> Text {
     text(content, at, size, DARK, Anchor::End)
 }
 
-/// A picture's title and the line below it.
+/// Adds a picture's title, and a note below it.
 pub fn title(group: Group, left: f64, heading: &str, note: &str) -> Group {
     group
         .add(text_start(heading, (left, 40.0), 24.0).set("font-weight", "bold"))
@@ -87,7 +87,7 @@ pub fn page(size: (f64, f64), group: Group) -> String {
         .to_string()
 }
 
-/// A cross of two strokes.
+/// A diagonal cross, as the letter x.
 pub fn cross(at: (f64, f64), arm: f64, colour: &str, width: f64) -> Group {
     let (x, y) = at;
     Group::new()
@@ -126,7 +126,7 @@ pub fn circle(centre: (f64, f64), radius: f64, fill: &str) -> Circle {
         .set("fill", fill)
 }
 
-/// The shape with an edge of this colour and width.
+/// Gives a shape an outline of this colour and width.
 pub fn edged<T: Node>(mut shape: T, colour: &str, width: impl Into<Value>) -> T {
     shape.assign("stroke", colour);
     shape.assign("stroke-width", width);
@@ -153,7 +153,7 @@ pub fn fixed(value: f64) -> f64 {
     (value * 100.0).round() / 100.0
 }
 
-/// The name on the board of an Arduino pin number: D9, or A0 for 14.
+/// The name that an Arduino board shows at a pin: D9 for pin number 9, A0 for 14.
 pub fn pin_name(number: u8) -> String {
     const A0: u8 = 14;
     match number.checked_sub(A0) {

@@ -17,12 +17,13 @@ pub fn plain(text: &str) -> String {
     result
 }
 
-/// The text with its lines made plain; the middle of a very long line is omitted.
+/// The text with every control character escaped, except line feeds; the middle of a very long line is omitted.
 pub fn readable_lines(text: &str) -> String {
     let lines: Vec<String> = text.split('\n').map(|line| shorten(&plain(line))).collect();
     lines.join("\n")
 }
 
+/// Replaces the middle of a very long line by the number of its characters.
 fn shorten(line: &str) -> String {
     const SIDE: usize = 300;
     let count = line.chars().count();

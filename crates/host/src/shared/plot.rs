@@ -66,7 +66,7 @@ impl Plot {
         self.size.0 / (self.x.1 - self.x.0)
     }
 
-    /// The lower right corner.
+    /// The lower right corner on the page.
     fn end(&self) -> (f64, f64) {
         (self.corner.0 + self.size.0, self.corner.1 + self.size.1)
     }
@@ -123,8 +123,9 @@ impl Plot {
             ))
     }
 
-    /// Adds a map in bands of colour, with one path for each colour. Equal neighbours in a row become one rectangle
-    /// of the path.
+    /// Adds a map of `cells` (columns, rows) in bands of colour. `colour` returns the colour at the middle of a cell,
+    /// or `None` for an empty cell. Each colour is one path; neighbours of equal colour in a row become one
+    /// rectangle.
     pub fn draw_map(
         &self,
         mut group: Group,
@@ -209,7 +210,7 @@ impl Scale {
         self.colours[band.min(self.colours.len() - 1)]
     }
 
-    /// A vertical key with the bands' limits.
+    /// Adds a vertical colour key with the limits of the bands.
     pub fn draw_key(
         &self,
         mut group: Group,
@@ -239,7 +240,7 @@ impl Scale {
     }
 }
 
-/// An entry of a legend: a short line and its meaning.
+/// Adds an entry of a legend: a short line and its meaning.
 pub fn draw_entry(group: Group, at: (f64, f64), colour: &str, dashes: &str, words: &str) -> Group {
     group
         .add(line(at, (at.0 + 34.0, at.1), colour, 3.0).set("stroke-dasharray", dashes))

@@ -42,7 +42,7 @@ impl Quantity {
     /// Parses a number within the bounds.
     ///
     /// # Errors
-    /// Fails if the text is not a number, or one out of bounds; NaN and infinity are out of bounds.
+    /// Fails if the text is not a number, or if the number is out of bounds; NaN and infinity are out of bounds.
     pub fn parse(self, text: &str) -> Result<f64, NumberFault> {
         match text.parse::<f64>() {
             Ok(value) if value.abs() <= self.most => Ok(value),
@@ -101,7 +101,7 @@ pub struct PoseArgs {
 }
 
 impl PoseArgs {
-    /// The pose, if one was given; clap checks that it is complete.
+    /// The pose of the options; `None` if none of them is given. clap checks that the pose is complete.
     pub fn get(&self) -> Option<Pose> {
         Some(Pose {
             theta1: self.theta1?,

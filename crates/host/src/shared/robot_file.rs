@@ -7,7 +7,7 @@ use lizard_robot::Robot;
 use crate::Failure;
 use crate::shared::files::{self, note_input};
 
-/// The robot.toml of this source tree, for use outside it.
+/// The robot.toml of this source tree, for use where no robot.toml is found.
 pub(crate) const BUILT_IN: &str = include_str!("../../../../robot.toml");
 
 /// The robots of robots/, by their names.
@@ -59,7 +59,7 @@ impl RobotFile {
     /// The text of the robot file.
     ///
     /// # Errors
-    /// Fails if the file is missing or is not text.
+    /// Fails if the file is missing or is not text, or if the current folder was removed.
     pub(crate) fn text(&self) -> Result<String, Failure> {
         if let Some(text) = &self.text {
             return Ok(text.clone());
@@ -71,7 +71,7 @@ impl RobotFile {
         files::read_text(&path)
     }
 
-    /// The robot file at a path; without one, [`RobotFile::load`] searches for it.
+    /// The robot file at a path. With `None`, [`RobotFile::load`] searches for robot.toml.
     pub fn at(path: Option<PathBuf>) -> Self {
         Self { path, text: None }
     }
@@ -90,7 +90,7 @@ impl RobotFile {
         })
     }
 
-    /// The file that was named with `--robot`.
+    /// The file that was named with `--robot`; `None` without this option.
     pub fn given(&self) -> Option<&Path> {
         self.path.as_deref()
     }
@@ -109,7 +109,8 @@ impl RobotFile {
         })
     }
 
-    /// Finds the robot. A file takes precedence over a built-in robot of the same name.
+    /// Finds the robot's source. A file takes precedence over a built-in robot of the same name. Without `--robot`,
+    /// looks for robot.toml in the current folder and the folders above it.
     fn found(&self) -> Result<Found, Failure> {
         if let Some(path) = &self.path {
             let named = NAMED.iter().find(|(name, _)| path.as_os_str() == *name);
@@ -136,7 +137,7 @@ enum Found {
 /// The current folder.
 ///
 /// # Errors
-/// Fails if it was removed, or may not be read.
+/// Fails if the folder was removed, or may not be read.
 pub(crate) fn here() -> Result<PathBuf, Failure> {
     std::env::current_dir()
         .map_err(|error| Failure::Impossible(format!("this folder has no path: {error}")))

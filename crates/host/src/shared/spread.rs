@@ -27,7 +27,7 @@ const MAX_PARTS: u32 = 1_000_000;
 pub struct Part {
     /// The number of this part, from 1.
     pub(crate) number: u32,
-    /// The number of parts.
+    /// The number of all parts.
     pub(crate) of: u32,
 }
 
@@ -77,7 +77,7 @@ impl Part {
     /// Computes this part's pieces and prints them.
     ///
     /// # Errors
-    /// Fails if the robot cannot be read, or the output not written.
+    /// Fails if the robot cannot be read, or the output cannot be written.
     pub fn print<C: Spreads, T: Serialize>(
         self,
         command: &C,
@@ -149,7 +149,7 @@ impl Spread {
         self.merged = Some(pieces);
     }
 
-    /// The only part to compute, if `--part` was given.
+    /// The only part to compute; `None` without `--part`.
     pub fn part(&self) -> Option<Part> {
         self.part
     }
@@ -203,6 +203,7 @@ impl Spread {
     }
 }
 
+/// The failure for parts that belong to another computation.
 pub(crate) fn other_pieces() -> Failure {
     Failure::Input("the parts do not hold what this computation finds".to_owned())
 }

@@ -4,7 +4,7 @@
 /// value as clap's for commands and options.
 const MIN_SIMILARITY: f64 = 0.7;
 
-/// The end of a sentence, `; did you mean NAME?`, with the name most like the word; empty if none is similar.
+/// The text `; did you mean NAME?` with the name that is most similar to `word`; empty if no name is similar.
 pub fn did_you_mean<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> String {
     let like = names
         .into_iter()

@@ -86,7 +86,8 @@ pub struct SimulatedBoard {
     lines: Vec<Line>,
     /// Number of lines that [`SimulatedBoard::next_line`] has returned.
     returned: usize,
-    /// The cycle at which one frame starts; others are counted from it.
+    /// The cycle at which a frame starts, from which the starts of the other frames are counted; `None` while
+    /// no pulse is known.
     anchor: Option<u64>,
 }
 
@@ -171,7 +172,7 @@ impl SimulatedBoard {
     }
 
     /// Returns the next line without its line end; `None` if it does not come
-    /// within `ms` after the bytes still to be sent.
+    /// within `ms` after the bytes still to be sent, or if the firmware stops.
     pub fn next_line(&mut self, ms: u64) -> Option<String> {
         let sending = self.uno.unsent() as u64 * BYTE_CYCLES;
         let end = self.uno.cycle() + sending + ms * CYCLES_PER_MS;
@@ -201,6 +202,7 @@ impl SimulatedBoard {
         &self.bytes
     }
 
+    /// Adds what the UNO has transmitted since the last call to the bytes and the lines.
     fn collect(&mut self) {
         let bytes = self.uno.take_transmitted();
         self.lines.extend(self.reader.read(&bytes));
@@ -229,6 +231,7 @@ impl SimulatedBoard {
         self.run_until(self.uno.cycle() + ms * CYCLES_PER_MS)
     }
 
+    /// Runs the board until a cycle.
     fn run_until(&mut self, cycle: u64) -> Result<(), BoardError> {
         let resets = self.uno.resets();
         match self.uno.run_until_cycle(cycle) {
@@ -266,7 +269,7 @@ impl SimulatedBoard {
     /// The cycle at which A1's first pulse starts, among the edges not yet taken.
     ///
     /// # Errors
-    /// Fails if there is none.
+    /// Fails if A1 has no pulse among these edges.
     pub fn first_pulse(&self) -> Result<u64, BoardError> {
         let pulses = self.uno.pulses(self.pins[0]);
         let first = pulses.first().map(|pulse| pulse.start);

@@ -11,7 +11,7 @@ pub const PATROL: &str = "patrol";
 /// The largest number of gaits in a patrol after the first.
 const MAX_MORE_GAITS: usize = 8;
 
-/// The Arduino pins that are tried for a missing input, in this order: A1 to A4 are no servos here.
+/// The Arduino pins that are tried for a missing input, in this order. Here A1 to A4 are analogue pins, not servos.
 const PINS: [&str; 8] = ["A1", "A2", "A3", "A4", "A5", "D12", "D8", "D7"];
 
 /// Adds a button, a nose contact and the routine [`PATROL`] to the robot file `text`. The routine

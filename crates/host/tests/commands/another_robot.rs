@@ -8,14 +8,15 @@ fn release() -> PathBuf {
     root().join("target/avr-atmega328p/release")
 }
 
-/// The name and the hash of a robot, as `lizard gaits` and the firmware's build write them.
+/// Extracts the robot's name and hash from the first line that `lizard gaits` or the
+/// firmware's build writes.
 fn robot_in(report: &str) -> String {
     let first = report.lines().next().expect("a line");
     let (_, robot) = first.split_once("robot ").expect("its name");
     robot.to_owned()
 }
 
-/// The robot of the image that was built.
+/// The name and hash of the robot in the image that `make firmware` built.
 fn robot_of_image() -> String {
     let gaits = std::fs::read_to_string(release().join("gaits.txt"));
     robot_in(&gaits.expect("`make firmware` has been run"))

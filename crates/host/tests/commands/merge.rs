@@ -1,5 +1,6 @@
 //! Long computations that are split into parts: independent processes compute the parts, and `lizard merge` prints
-//! the same as one process would. `make parallel-test` tests this with GNU parallel and commands that take longer.
+//! what one process alone would print. `make parallel-test` tests this with GNU parallel and commands that take
+//! longer.
 
 use crate::program::{lizard, paper};
 
@@ -7,7 +8,7 @@ fn complaint(arguments: &str, input: &str) -> String {
     lizard(arguments, input).refusal()
 }
 
-/// The output of all parts, the last part first.
+/// Computes all parts and returns their output, the last part first.
 fn parts(arguments: &str, of: usize) -> String {
     let part = |number| lizard(&format!("{arguments} --part {number}/{of}"), "").success();
     (1..=of).rev().map(part).collect()

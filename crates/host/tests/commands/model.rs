@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use crate::program::{run, scratch};
 
-/// A path without a file.
+/// Returns a path at which no file exists.
 fn fresh_path(name: &str) -> PathBuf {
     let file = scratch().join(name);
     let _ = fs::remove_file(&file);

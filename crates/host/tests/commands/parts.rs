@@ -10,7 +10,7 @@ fn make(folder: &Path, arguments: &[&str]) -> Outcome {
     run(&[&["parts", &folder], arguments].concat())
 }
 
-/// A path at which there is no folder.
+/// Returns a path at which no folder exists.
 fn fresh_path(name: &str) -> PathBuf {
     let folder = scratch().join(name);
     let _ = fs::remove_dir_all(&folder);

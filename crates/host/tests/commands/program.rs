@@ -8,25 +8,26 @@ use lizard_time_limit::LIMIT;
 /// The result of a run of `lizard`.
 #[derive(Debug)]
 pub struct Outcome {
-    /// The exit code; none after a signal.
+    /// The exit code; `None` if a signal ended the program.
     pub code: Option<i32>,
     pub out: String,
     pub err: String,
 }
 
 impl Outcome {
-    /// Standard output of a run that succeeds.
+    /// Checks that the run succeeded, and returns its standard output.
     pub fn success(self) -> String {
         assert_eq!(self.code, Some(0), "{}", self.err);
         self.out
     }
 
-    /// Standard output as one JSON value.
+    /// Checks that the run succeeded, and parses its standard output as one JSON value.
     pub fn json(self) -> serde_json::Value {
         serde_json::from_str(&self.success()).expect("JSON")
     }
 
-    /// The message of a run that refuses its input and writes nothing.
+    /// Checks that the run refused its input and wrote nothing to standard output, and returns its
+    /// message.
     pub fn refusal(self) -> String {
         assert_eq!(self.code, Some(2), "{}", self.err);
         assert_eq!(self.out, "", "nothing is half written");
@@ -55,12 +56,12 @@ pub fn robot(name: &str) -> String {
     path.display().to_string()
 }
 
-/// Adds the paper's robot to a command line: for tests that check its figures.
+/// Adds the option for the paper's robot to a command line, for tests that check the paper's figures.
 pub fn paper(args: &str) -> String {
     format!("{args} --robot robots/paper.toml")
 }
 
-/// A robot file for one test, the paper's with some lines changed; removed when
+/// A robot file for one test: a copy of another file with some lines changed. It is removed when
 /// dropped.
 pub struct RobotFile(std::path::PathBuf);
 
@@ -69,7 +70,7 @@ impl RobotFile {
         Self::changed("robots/paper.toml", name, changes)
     }
 
-    /// Another file of the repository with some lines changed.
+    /// Copies a file of the repository with some lines changed.
     pub fn changed(file: &str, name: &str, changes: &[(&str, &str)]) -> Self {
         let mut text = read(file);
         for (from, to) in changes {
@@ -81,7 +82,7 @@ impl RobotFile {
         Self(path)
     }
 
-    /// Adds this robot to a command line.
+    /// Adds the option for this robot file to a command line.
     pub fn of(&self, args: &str) -> String {
         format!("{args} --robot {}", self.0.display())
     }

@@ -19,12 +19,13 @@ impl Board {
         }
     }
 
-    /// The lines printed within some frames.
+    /// Runs the board for a number of frames and returns the lines that it prints.
     fn run(&mut self, frames: u32) -> Vec<String> {
         self.running.run(frames)
     }
 
-    /// The lines printed after a line is sent, until all motion has ended.
+    /// Sends a line and returns the lines that the board prints in the next 100 frames, in which
+    /// all motion ends.
     fn send(&mut self, line: &str) -> Vec<String> {
         let mut answer = self.running.send(format!("{line}\r").as_bytes());
         answer.extend(self.run(100));
@@ -32,7 +33,8 @@ impl Board {
     }
 }
 
-/// True if a line is as the page shows it, which may omit its end.
+/// True if a line is as the page shows it; a shown line that ends in `...` is compared only up
+/// to there.
 fn matches_page(line: &str, shown: &str) -> bool {
     shown
         .strip_suffix("...")

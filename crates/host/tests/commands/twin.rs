@@ -1,10 +1,10 @@
-//! `lizard twin` on routines, and on wrong input.
+//! Tests of `lizard twin`: routines, the speeds stated in docs/gaits.md, and wrong input.
 
 use serde_json::Value;
 
 use crate::program::{RobotFile, lizard, paper, read};
 
-/// The JSON object printed by a command whose value of `key` is `name`.
+/// Runs a command and returns the printed JSON object in which `key` is `name`.
 fn object(line: &str, key: &str, name: &str) -> Value {
     let printed = lizard(line, "").success();
     let mut objects = printed
@@ -34,7 +34,7 @@ fn a_round_of_a_routine_leads_as_far_as_lizard_gaits_says_of_the_same_servos() {
     }
     let lost = part(&tour["predicted"], "turn") - part(&tour["by_servos"], "turn");
     assert!(lost > 1.0, "servos with a mass to turn lose some: {lost}");
-    // Two feet pull against two, which decides no distance, so neither command may state one.
+    // Two feet pull against the other two. Then the distance is not determined, so neither command may state one.
     let gaze = object(&robot.of("gaits --json"), "routine", "gaze");
     for path in [&twin("gaze", "own")["way"], &gaze["by_servos"]] {
         assert!(path["forward"].is_null() && path["turn"].is_f64(), "{path}");

@@ -1,4 +1,4 @@
-//! The words of the command line: commands, aliases, suggestions, completions and manual pages.
+//! Tests of the words of the command line: commands, aliases, suggestions, completions and manual pages.
 
 use std::path::Path;
 use std::process::Command;
@@ -142,7 +142,8 @@ fn a_mistyped_word_is_answered_with_a_suggestion() {
     }
 }
 
-/// The completions that bash offers after some words, from the script alone.
+/// Runs the completion script in bash, without bash's own completions, and returns the offers for the word at
+/// `index`.
 #[cfg(unix)]
 fn bash_completions(script: &Path, words: &str, index: usize) -> Vec<String> {
     let line = format!(

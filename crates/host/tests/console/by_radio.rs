@@ -12,7 +12,7 @@ fn a_script_by_radio_drives_with_deadman_and_its_end_stops_the_robot() {
     let say = |lines: &str, expected: &[&str]| {
         let mut text = String::new();
         LIMIT.expect("the script to be heard", || {
-            // Longer than `deadman` says, so that the robot stops.
+            // Longer than the `deadman` time, so that the robot stops.
             std::thread::sleep(std::time::Duration::from_millis(1_500));
             text = run(folder.path(), &["console", &uno.port()], lines).0;
             expected.iter().all(|words| text.contains(words))

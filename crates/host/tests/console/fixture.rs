@@ -104,7 +104,7 @@ impl Drop for Uno {
     }
 }
 
-/// A pseudo terminal: the test's end, the program's end, and its path.
+/// Opens a pseudo terminal; returns the test's side, the program's side, and its path.
 pub fn terminal() -> (File, OwnedFd, PathBuf) {
     let ours = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC);
     let ours = ours.expect("a pseudo terminal");
@@ -119,7 +119,8 @@ pub fn terminal() -> (File, OwnedFd, PathBuf) {
     (File::from(ours), theirs.into(), path)
 }
 
-/// [`terminal`], 100 columns wide.
+/// Opens a pseudo terminal, 100 columns wide; returns the test's side and the program's
+/// side.
 pub fn wide_terminal() -> (File, OwnedFd) {
     let (ours, theirs, _) = terminal();
     let size = Winsize {
@@ -182,7 +183,8 @@ impl AtTerminal {
         }
     }
 
-    /// Waits until the screen shows these words after those of the previous wait.
+    /// Waits until the screen shows these words after those of the previous wait. Panics if
+    /// the program ends first or the time limit passes.
     pub fn wait_for(&mut self, words: &str) {
         let (mut found, mut ended) = (None, false);
         LIMIT.wait_for(|| {
@@ -201,7 +203,8 @@ impl AtTerminal {
     }
 }
 
-/// A device at a pseudo terminal that is not a simulated board, in a thread of its own.
+/// A device at a pseudo terminal that is not a simulated board; it runs in a thread of its
+/// own.
 pub struct Device {
     pub port: String,
     end: mpsc::Sender<()>,
@@ -209,7 +212,7 @@ pub struct Device {
 }
 
 impl Device {
-    /// A device that calls `act` with its end of the line repeatedly.
+    /// Starts a device that calls `act` repeatedly with its own side of the terminal.
     pub fn start(mut act: impl FnMut(&mut File) + Send + 'static) -> Self {
         let (mut ours, theirs, path) = terminal();
         // Otherwise this test itself would keep the port open.

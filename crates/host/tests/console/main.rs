@@ -1,5 +1,5 @@
-//! `lizard console` and the other commands for a board as a user meets them, with a simulated UNO at a
-//! pseudo terminal. Time is real here, so a test is a few seconds long.
+//! `lizard console` and the other commands for a board as a user runs them, with a simulated UNO at a
+//! pseudo terminal. The tests run in real time, so a test takes a few seconds.
 #![cfg(target_os = "linux")]
 
 mod by_radio;
@@ -110,7 +110,7 @@ fn a_person_at_a_terminal_types_edits_and_outlives_an_unplugged_board() {
     let mut person = AtTerminal::start(lizard(folder.path(), &["console", &uno.port()]));
     person.wait_for("# lizard ");
     person.wait_for("no fault");
-    // Ctrl-A, and a letter that was forgotten.
+    // Ctrl-A moves to the start of the line, where the forgotten letter is added.
     person.press("top\x01s\r");
     person.wait_for("> stop");
     person.wait_for("ok stop");
@@ -186,7 +186,7 @@ fn a_recorded_session_is_drawn_and_summarized() {
     );
     assert!(out.contains("trouble     none\n"), "{out}");
     let picture = fs::read_to_string(here.join("a.svg")).expect("it was drawn");
-    // A machine that pauses for a second breaks all four curves.
+    // If the machine pauses for a second, all four curves have a gap.
     let curves = picture.matches("<polyline").count();
     assert!(
         curves >= 4 && curves.is_multiple_of(4),
@@ -220,7 +220,7 @@ fn a_port_that_another_program_has_open_is_refused() {
 fn a_board_that_is_not_a_lizard_is_described_by_its_output() {
     let folder = tempfile::tempdir().expect("a folder");
     let device = Device::start(|line| {
-        // Nobody may have it open.
+        // Writing fails while no program has the port open.
         let _ = line.write_all(b"Grbl 1.1h ['$' for help]\r\n");
     });
     let (_, error, code) = run(
@@ -244,7 +244,7 @@ fn the_unanswered_lines_of_a_board_that_falls_silent_are_counted() {
     let mut asked: Vec<u8> = Vec::new();
     let device = Device::start(move |line| {
         let mut bytes = [0; 64];
-        // If nobody has it open, reading fails.
+        // Reading fails while no program has the port open.
         let count = line.read(&mut bytes).unwrap_or_default();
         asked.extend(&bytes[..count]);
         if asked == b"status\n" {
@@ -319,7 +319,7 @@ fn a_link_of_the_simulated_board_replaces_no_other_and_goes_with_the_board() {
         Path::new("a-file")
     );
 
-    // What a run that was killed leaves behind.
+    // A killed run leaves such a link behind.
     std::os::unix::fs::symlink("/dev/pts/999999", &own).expect("a link");
     let name = own.display().to_string();
     let mut child = lizard(folder.path(), &["sim", "--pty", &name])
@@ -344,7 +344,7 @@ fn a_picture_is_not_poured_over_a_terminal() {
     assert_eq!(person.exit_code(), Some(2));
 }
 
-/// The state of a process, as `ps` has it: S asleep, R running, T stopped.
+/// The state of a process, as `ps` prints it: S asleep, R running, T stopped.
 fn state(child: &Child) -> char {
     let stat = fs::read_to_string(format!("/proc/{}/stat", child.id())).expect("it is there");
     let (_, after) = stat.rsplit_once(") ").expect("its name ends");
@@ -404,7 +404,7 @@ fn a_program_whose_terminal_is_closed_ends() {
                 let count = ours.read(&mut bytes).expect("it is shown");
                 text.push_str(&String::from_utf8_lossy(&bytes[..count]));
             }
-            // And the terminal is gone: nobody else has this end.
+            // Closes the terminal: no other process has this side of it open.
             drop(ours);
             text
         });

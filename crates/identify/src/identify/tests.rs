@@ -1,4 +1,5 @@
-//! The choice of the keys and their errors, tested on three hundred robots with a smooth model that takes no time.
+//! Tests of the choice of the keys and of their errors, on three hundred robots with a smooth model that takes no
+//! time.
 
 use fastrand::Rng;
 
@@ -6,11 +7,12 @@ use super::*;
 use crate::key::{PLAY, TWIST};
 use crate::problem::MODEL_ERROR;
 
-/// Number of gaits, and the standard error of each figure.
+/// Number of gaits.
 const GAITS: usize = 8;
+/// Standard error of each measured figure.
 const ERROR: f64 = 0.05;
 
-/// A model whose movements are curved functions of the keys, different for each gait.
+/// A model whose movements are curved functions of the keys, with other coefficients for each gait.
 fn model(values: &Values) -> Vec<Travel> {
     let mut rng = Rng::with_seed(5);
     let mut part = || {
@@ -39,7 +41,7 @@ fn start() -> Values {
     std::array::from_fn(|i| KEYS[i].least.max(0.0))
 }
 
-/// The movements of a robot as measured through a card that is glued on inexactly.
+/// The movements of a robot, measured with errors through a card that is not exactly in its place.
 fn measured(values: &Values, card: Card, rng: &mut Rng) -> Vec<MeasuredMovement> {
     let way = |travel: Travel| {
         let seen = card.card_travel(travel);
@@ -105,7 +107,7 @@ fn changed_keys_are_within_two_errors_in_95_of_100_and_right_ones_stay() {
 
 #[test]
 fn at_a_fold_the_error_is_that_of_the_flatter_side() {
-    /// A foot shorter than this carries no load, however short it is.
+    /// Twist below which the foot carries no load, so a shorter foot changes nothing more, mm.
     const FOLD: f64 = -0.5;
     let folded = |values: &Values| {
         let mut values = *values;
@@ -205,7 +207,8 @@ fn a_play_below_zero_is_not_written() {
         values[PLAY] = play;
         model(&values)
     };
-    // As far from the file's robot as a robot with play, in the opposite direction.
+    // These movements differ from those of the file's robot as much as a play of 0.5 deg would change them, but in
+    // the opposite direction.
     for ((way, at), play) in ways.iter_mut().zip(with_play(0.0)).zip(with_play(0.5)) {
         way.mean[0] -= play.forward - at.forward;
         way.mean[1] -= play.left - at.left;

@@ -1,10 +1,10 @@
-//! The generator of the polynomials of `src/angle.rs`. A test compares their coefficients
-//! with it, and prints the generator's if they differ.
+//! The generator of the polynomials' coefficients in `src/angle.rs`. A test compares the
+//! coefficients there with the generated ones, and prints these if they differ.
 //!
 //! Each polynomial interpolates a smooth function of the square of an argument at Chebyshev
-//! nodes, which keeps the largest error within a few per cent of the least that
-//! any polynomial of its degree has. The nodes, the functions and the solution
-//! carry 256 bits; each coefficient is rounded once, to the nearest f64.
+//! nodes, which keeps the largest error within a few per cent of the minimum for
+//! a polynomial of its degree. The nodes, the functions and the solution
+//! are computed with 256 bits; each coefficient is rounded once, to the nearest f64.
 
 use dashu_float::{FBig, round::mode::HalfEven};
 
@@ -13,25 +13,25 @@ type Number = FBig<HalfEven, 2>;
 
 /// Precision of every computation, bits.
 const BITS: usize = 256;
-/// Share by which the interval of nodes is longer than the arguments need, for
-/// arguments that rounding has pushed over its end.
+/// Share by which the interval of nodes extends past the square of the largest argument,
+/// since rounding may push an argument over its limit.
 const MARGIN_SHARE: f64 = 1e-4;
-/// Points at which an error is measured.
+/// Number of points at which an error is measured.
 const POINTS: u32 = 2000;
 
-/// A polynomial that approximates part of a function.
+/// The polynomial P in an approximation f(x) = lead(x) + x^power P(x^2).
 pub struct Polynomial {
     /// The polynomial's name in `src/angle.rs`.
     pub name: &'static str,
     /// Number of coefficients.
     terms: u32,
-    /// The largest argument, radians or a tangent.
+    /// The largest argument: radians, or a tangent for `ATAN`.
     limit: fn() -> Number,
-    /// The function that it approximates.
+    /// The function f.
     function: fn(&Number) -> Number,
-    /// The terms that are added to the polynomial's part.
+    /// The exact first terms of the function's power series.
     lead: fn(&Number) -> Number,
-    /// The power of the argument that multiplies the polynomial.
+    /// The exponent of the argument in the factor of the polynomial.
     power: i32,
 }
 
@@ -67,14 +67,14 @@ fn number(whole: u32) -> Number {
     Number::from(whole).with_precision(BITS).value()
 }
 
-/// An f64 exactly.
+/// Converts an f64 exactly.
 fn exact_number(value: f64) -> Number {
     let exact = Number::try_from(value).expect("a finite number");
     exact.with_precision(BITS).value()
 }
 
 impl Polynomial {
-    /// The coefficients, the constant first.
+    /// Computes the coefficients, the constant first.
     pub fn coefficients(&self) -> Vec<f64> {
         let limit = (self.limit)();
         let longest = &limit * &limit * (number(1) + exact_number(MARGIN_SHARE));
@@ -85,7 +85,7 @@ impl Polynomial {
                 &half * (number(1) + turn.cos())
             })
             .collect();
-        // Divided differences, then Newton's form multiplied out.
+        // Computes divided differences, then expands Newton's form to powers.
         let mut differences: Vec<Number> = nodes.iter().map(|z| self.target(&z.sqrt())).collect();
         for order in 1..nodes.len() {
             for i in (order..nodes.len()).rev() {
@@ -107,8 +107,8 @@ impl Polynomial {
         powers.iter().map(|power| power.to_f64().value()).collect()
     }
 
-    /// The largest error that coefficients leave in the function within the
-    /// limit, relative to the function.
+    /// The largest error of the approximation with these coefficients, relative
+    /// to the function, for arguments up to the limit.
     pub fn error(&self, coefficients: &[f64]) -> f64 {
         let limit = (self.limit)();
         (1..=POINTS)
@@ -126,7 +126,7 @@ impl Polynomial {
             .fold(0.0, f64::max)
     }
 
-    /// The exact value that the polynomial approximates at an argument.
+    /// The exact value, at an argument x, that the polynomial P approximates.
     fn target(&self, x: &Number) -> Number {
         ((self.function)(x) - (self.lead)(x)) / power(x, self.power)
     }

@@ -1,8 +1,7 @@
-//! From a point to the crank angles that put the end point there.
+//! Inverse kinematics of the five-bar: the crank angles that put the end point at a given point.
 //!
-//! Each arm by itself is a triangle of crank, coupler and the line from its shaft
-//! to the point. It can bend to either side of that line, so a point has four
-//! solutions.
+//! Each arm by itself is a triangle of crank, coupler and the line from its shaft to the point. An
+//! arm can bend to either side of that line, so a point has four solutions.
 
 use super::{AssemblyMode, FiveBar, FiveBarPose, double_area};
 use crate::fault::Fault;
@@ -84,8 +83,8 @@ impl FiveBar {
         Ok(WorkingMode::ALL.map(solution))
     }
 
-    /// The pose with the end point at a point (mm, own frame) and both elbows
-    /// outward: the inverse without its arc tangents.
+    /// The pose with the end point at a point (mm, own frame) and both elbows outward; cheaper than
+    /// [`FiveBar::inverse`], since it needs no arc tangents.
     ///
     /// # Errors
     /// Fails as [`FiveBar::inverse`] and [`FiveBar::forward`] do.
@@ -113,12 +112,15 @@ impl FiveBar {
 /// Both arms, solved for a point.
 struct Arms {
     bars: FiveBar,
-    /// From each shaft to the point.
+    /// Vector from the left shaft to the point, mm.
     to_left: Vector,
+    /// Vector from the right shaft to the point, mm.
     to_right: Vector,
-    /// Direction of each crank, length one, bent counter-clockwise and clockwise
-    /// from the line to the point.
+    /// Directions of the left crank, length one, bent counter-clockwise and clockwise from the line
+    /// to the point.
     left: [Vector; 2],
+    /// Directions of the right crank, length one, bent counter-clockwise and clockwise from the line
+    /// to the point.
     right: [Vector; 2],
 }
 
@@ -146,8 +148,8 @@ impl Arms {
     }
 }
 
-/// The directions (length one) of a crank whose coupler ends in a point: bent
-/// counter-clockwise and clockwise from the line between shaft and point.
+/// The directions (length one) of a crank whose coupler ends at a point: bent counter-clockwise and
+/// clockwise from the line between shaft and point.
 fn crank_directions(
     to_point: Vector,
     crank: f64,
@@ -159,7 +161,7 @@ fn crank_directions(
     if !distance.is_finite() || !max.is_finite() {
         return Err(Fault::NotFinite);
     }
-    // A point on the rim that was computed elsewhere may miss it by rounding.
+    // A point on the edge of the reach that was computed elsewhere may miss it by rounding.
     let slack = max * 4.0 * f64::EPSILON;
     if distance > max + slack || distance < min - slack {
         return Err(Fault::OutOfReach {
@@ -179,7 +181,7 @@ fn crank_directions(
         let crank = rotate(Vector::new(along, across), to_point);
         crank * (1.0 / crank.length())
     });
-    // Where the products overflow or vanish no direction of length one is left.
+    // If the products overflow or vanish, no direction of length one is left.
     if bent.iter().all(|crank| (crank.square() - 1.0).abs() < 1e-9) {
         Ok(bent)
     } else {

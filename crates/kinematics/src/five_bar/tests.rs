@@ -1,10 +1,10 @@
-//! The five-bar against Newton's method and the law of cosines.
+//! Tests of the five-bar against Newton's method and the law of cosines.
 
 use crate::reference::{HEAD, end_point, loop_gap, newton};
 use lizard_kinematics::{AssemblyMode, Elbow, Fault, FiveBar, Vector, wrap};
 use proptest::prelude::*;
 
-/// Any five-bar, symmetrical or not, from 5 to 200 mm a link.
+/// Any five-bar, symmetrical or not, with links of 5 to 200 mm.
 fn any_five_bar() -> impl Strategy<Value = FiveBar> {
     proptest::array::uniform5(5.0..200.0f64).prop_map(FiveBar::new)
 }
@@ -80,8 +80,8 @@ proptest! {
         if let Ok(assemblies) = bars.inverse(point) {
             for a in assemblies {
                 let pose = bars.forward_in(a.assembly_mode, a.theta_left, a.theta_right).unwrap();
-                // The end point is nearly free where the tips nearly meet, and where the
-                // couplers nearly line up.
+                // The end point is nearly free where the crank tips nearly coincide, and
+                // where the couplers are nearly in line.
                 let stiff = (pose.gap.length() / 1e3).min(pose.type2.abs());
                 let tolerance = 1e-9_f64.max(1e-12 / stiff);
                 prop_assert!((pose.end_point - point).length() < tolerance, "{a:?} {pose:?}");
@@ -95,7 +95,8 @@ proptest! {
     ) {
         if let Ok(pose) = bars.forward(left, right) {
             let (l, r) = (pose.type1_left(), pose.type1_right());
-            // Near a type-1 singularity the angle depends on the point like a square root.
+            // Near a type-1 singularity, the angle varies like a square root of the point's
+            // distance.
             prop_assume!(l.abs() > 1e-2 && r.abs() > 1e-2 && pose.type2 > 1e-3);
             // A shaft under the end point leaves that crank's angle free.
             prop_assume!((pose.end_point - bars.left_shaft()).length() > 1.0);

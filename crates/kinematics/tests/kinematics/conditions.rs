@@ -24,7 +24,7 @@ fn truth(robot: &Lizard, [t1, t4, t8, t5]: [f64; 4]) -> Option<BTreeMap<&'static
     // Crank tips.
     let (p1, p4) = (a1 + cis(t1) * l.l1, a2 + cis(t4) * l.l4);
     let (p8, p5) = (a3 + cis(t8) * l.l9, a4 + cis(t5) * l.l6);
-    // End points: left of the line p1 p4, and right of the line p5 p8.
+    // End points: left of the line from p1 to p4, and right of the line from p5 to p8.
     let head = meeting(p1, l.l2, p4, l.l3)?;
     let tail = meeting(p8, l.l8, p5, l.l7)?;
     // Slider lengths.
@@ -60,8 +60,7 @@ fn any_limits() -> impl Strategy<Value = Limits> {
     })
 }
 
-/// The two values between which a condition is safe, by the beginning of its
-/// name.
+/// The least and the greatest safe value of a condition, chosen by the first word of its name.
 fn range(limits: &Limits, name: &str) -> (f64, f64) {
     match name.split('_').next().unwrap() {
         "type2" => (limits.type2, f64::INFINITY),
@@ -97,7 +96,7 @@ proptest! {
             let found = conditions[name];
             prop_assert!((found - expected).abs() < 1e-7, "{name} {found} {expected}");
         }
-        // The array of margins, and each end by itself, give the same values.
+        // The array of margins and the conditions of each single end give the same values.
         for (what, value) in s.margins.iter() {
             prop_assert_eq!(value, conditions[what.name()]);
         }
@@ -127,7 +126,7 @@ proptest! {
         let found: Vec<_> = limits.violations(&s).map(|v| (v.what, v.value, v.limit)).collect();
         prop_assert_eq!(limits.allow(&s), found.is_empty());
         prop_assert_eq!(&found, &expected);
-        // Each end by itself finds its own violations.
+        // Each end alone finds its own violations.
         let of_end = |end: End| limits.end_violations(end, s.end(end));
         let of_ends = End::ALL.into_iter().flat_map(of_end).map(|v| v.what.name());
         let of_all = expected.iter().map(|(what, ..)| what);
@@ -184,7 +183,7 @@ proptest! {
             }
             prop_assert!(distance(robot.to_end(end, point), s.end(end).end_point) < 1e-9);
         }
-        // Arm tips, from the rear shaft.
+        // Arm tips, relative to the rear shaft.
         let [left, right] = Side::ALL.map(|side| s.side(side));
         prop_assert!(distance(a4 + left.rear_tip, a4 + cis(pose[3] - 90.0) * l.l11) < 1e-9);
         prop_assert!(distance(a4 + left.front_tip, a1 + cis(pose[0] + 90.0) * l.l14) < 1e-9);

@@ -5,7 +5,8 @@ use proptest::prelude::*;
 
 use crate::reference::{any_lizard, any_pose, lizard};
 
-/// Lengths over the whole range of an f64, and ordinary ones.
+/// Ordinary lengths, lengths over the whole range of an f64, and lengths near 1e77 and 1e154,
+/// whose fourth and second powers overflow.
 fn any_length() -> impl Strategy<Value = f64> {
     prop_oneof![
         5.0..200.0f64,
@@ -15,7 +16,7 @@ fn any_length() -> impl Strategy<Value = f64> {
     ]
 }
 
-/// Five links of similar size, most of which close, or of unrelated sizes.
+/// Five-bars with links of similar size, most of which close, or of unrelated sizes.
 fn any_bars() -> impl Strategy<Value = FiveBar> {
     let unit = || prop_oneof![Just(None), any_length().prop_map(Some)];
     (
@@ -69,7 +70,8 @@ proptest! {
             if let Ok(all) = bars.inverse(point) {
                 for a in all {
                     prop_assert!(a.theta_left.is_finite() && a.theta_right.is_finite());
-                    // No intermediate result underflowed either: the arm really ends at the point.
+                    // No intermediate result underflowed either: the computed arm ends at the
+                    // point.
                     let tip = bars.left_shaft() + Vector::direction(a.theta_left) * bars.crank_left;
                     let reach = (point - tip).length();
                     let error = (reach - bars.coupler_left).abs();

@@ -53,7 +53,7 @@ proptest! {
             - a3 - cis(t8 + 90.0) * l.l16 - cis(s.right.phi()) * (l.l17 + l.l18 + s.right.s);
         prop_assert!(left.length() < 1e-9, "{left:?}");
         prop_assert!(right.length() < 1e-9, "{right:?}");
-        // Points: from each shaft along crank and coupler.
+        // End points: from each shaft along crank and coupler.
         let head = a1 + cis(t1) * l.l1 + cis(s.theta2()) * l.l2;
         let tail = a3 + cis(t8) * l.l9 + cis(s.theta7()) * l.l8;
         prop_assert!((s.head_point() - head).length() < 1e-9);
@@ -107,7 +107,7 @@ fn each_broken_limit_has_its_message() {
     let arm = "margin type1_a1 -0.317 is below 0.300";
     let slider = "left slider travel +47.09 mm is above +45.00 mm";
     let crossed = "head crank tips are crossed: -18.57 mm from left to right";
-    // Beyond a leg's change point, where its sine is as large but negative.
+    // The leg is beyond its change point: its sine is large enough, but negative.
     let beyond = "margin leg_rf -0.319 is below 0.300";
     for (pose, message) in [
         ([176.0, a2, a3, a4], leg),

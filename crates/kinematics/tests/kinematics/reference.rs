@@ -65,8 +65,8 @@ pub fn newton(bars: &FiveBar, cranks: [f64; 2], start: [f64; 2]) -> Option<[f64;
     (fx.hypot(fy) < 1e-10).then_some([t2, t3])
 }
 
-/// The end point by the law of cosines at the left crank tip, left of the line
-/// between the tips; `None` if the circles miss each other.
+/// The end point by the law of cosines at the left crank tip, to the left of the line from the left tip to
+/// the right one; `None` if the circles do not intersect.
 pub fn end_point(bars: &FiveBar, theta_left: f64, theta_right: f64) -> Option<[f64; 2]> {
     let (a, b) = (theta_left * PI / 180.0, theta_right * PI / 180.0);
     let (half, l1, l4) = (bars.base / 2.0, bars.crank_left, bars.crank_right);
@@ -100,7 +100,7 @@ pub fn any_solved() -> impl Strategy<Value = (Lizard, [f64; 4], Solution)> {
     })
 }
 
-/// A configuration with this many cases, of which many may be rejected.
+/// A proptest configuration with this number of cases that allows many rejected ones.
 pub fn cases(cases: u32) -> ProptestConfig {
     ProptestConfig {
         cases,
@@ -115,14 +115,14 @@ pub fn any_pose() -> impl Strategy<Value = [f64; 4]> {
     [0.0..180.0, 0.0..180.0, 180.0..360.0, 180.0..360.0f64]
 }
 
-/// The direction of an angle in degrees.
+/// The unit vector at an angle in degrees.
 pub fn cis(degrees: f64) -> Vector {
     let (sin, cos) = degrees.to_radians().sin_cos();
     Vector::new(cos, sin)
 }
 
-/// The point in which a link of length `r` on `a` meets a link of length `s` on `b`, to
-/// the left of the line from `a` to `b`, by the law of cosines; `None` if they miss each
+/// The joint between a link of length `r` that is pivoted at `a` and a link of length `s` that is pivoted at
+/// `b`, to the left of the line from `a` to `b`, by the law of cosines; `None` if the links cannot reach each
 /// other.
 pub fn meeting(a: Vector, r: f64, b: Vector, s: f64) -> Option<Vector> {
     let d = (b.x - a.x).hypot(b.y - a.y);

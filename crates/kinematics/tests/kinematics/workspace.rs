@@ -40,7 +40,7 @@ proptest! {
                 inside += i32::from(reached);
             }
         }
-        // The count is wrong by about one cell for each cell along the rim.
+        // The count is wrong by about one cell for each cell along the edge of the workspace.
         let counted = f64::from(inside) * cell * cell;
         prop_assert!((counted - workspace.area()).abs() < 6.0 * edge * cell, "{counted} {}", workspace.area());
     }
@@ -98,8 +98,8 @@ proptest! {
     }
 }
 
-/// The largest distance of a reachable grid cell from the unreachable points, and the width of a cell. A shaft
-/// counts as unreachable, even if an arm with two equal links can be folded onto it.
+/// The largest distance of a reachable grid cell from the nearest unreachable point, and the width of a cell.
+/// A shaft counts as unreachable, even if an arm with two equal links can be folded onto it.
 fn largest_by_distance_field(bars: &FiveBar) -> (f64, f64) {
     const CELLS: usize = 120;
     let reach = bars.crank_left + bars.coupler_left;

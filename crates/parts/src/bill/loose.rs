@@ -2,7 +2,7 @@
 
 use crate::price::Price;
 
-/// Count, name, grams of one piece and price class.
+/// A row of the bill: number of pieces, name, mass of one piece in g, and price class.
 pub(super) type Row = (usize, &'static str, f64, Price);
 
 /// Things to buy that have no place of their own on the robot, such as wires. Their mass centre is assumed to be
@@ -72,7 +72,8 @@ pub(super) const RADIO: [Row; 5] = [
     (4, "jumper wire, socket to pin, 20 cm", 0.4, Price::B),
 ];
 
-/// Things to buy for the inputs of robot.toml: the input's name, and its row. They are optional, too.
+/// Things to buy for the inputs of robot.toml: the input's name, and its row. They are optional, so neither the
+/// mass nor the sum of the prices includes them.
 pub(super) const INPUTS: [(&str, Row); 2] = [
     (
         "button",

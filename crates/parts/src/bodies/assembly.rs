@@ -45,17 +45,17 @@ impl Assembly {
         &self.robot
     }
 
-    /// The heights of its layers.
+    /// The heights of the layers in which the bodies lie.
     pub fn stack(&self) -> &Stack {
         &self.stack
     }
 
-    /// The plan of its pivots and anchors.
+    /// The positions of the pivots and anchors, seen from above.
     pub fn layout(&self) -> &Layout {
         &self.layout
     }
 
-    /// Every body that the robot has.
+    /// Every body of the robot.
     pub fn bodies(&self) -> &[Body] {
         &self.bodies
     }
@@ -77,17 +77,17 @@ impl Assembly {
         self
     }
 
-    /// True if two bodies may touch: they move together, or are made to meet.
+    /// True if two bodies may touch: they move together, or they touch by design.
     pub fn may_touch(&self, a: &Body, b: &Body) -> bool {
         a.mount == b.mount || a.meets.contains(&b.name) || b.meets.contains(&a.name)
     }
 
-    /// The place of a mount's frame at a pose, if no leg lags behind its servo.
+    /// The placement of a mount's frame at a pose at which no leg lags behind its servo.
     pub fn place(&self, mount: Mount, pose: &Solution) -> Placement {
         self.place_on(mount, &Cranks::of(self.robot.lizard(), pose))
     }
 
-    /// The place of a mount's frame, for joints of any number type.
+    /// The placement of a mount's frame, for joints of any number type.
     pub(crate) fn place_on<T: Real>(&self, mount: Mount, joints: &Cranks<T>) -> Placement<T> {
         let vector = |v: Vector| Vector::new(T::of(v.x), T::of(v.y));
         let turned = |servo: usize, at: Vector| Placement {

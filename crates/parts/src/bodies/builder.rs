@@ -1,4 +1,5 @@
-//! A robot's bodies, added one by one; each screw comes with its nut.
+//! A builder of a robot's bodies, which adds them one by one, each screw together with its
+//! nut.
 
 use lizard_kinematics::Vector;
 use lizard_robot::{Parts, Robot};
@@ -37,24 +38,25 @@ pub struct Builder<'a> {
 /// A screw and the place of its nut.
 pub struct Bolt<'a> {
     pub name: &'a str,
-    /// The mount that it moves with.
+    /// The mount that the screw moves with.
     pub mount: Mount,
     pub at: Vector,
-    /// Height of the face under its head, mm.
+    /// Height of the face under the screw's head, mm.
     pub head: f64,
     pub direction: Direction,
     /// Height of the face that the nut bears on, mm.
     pub nut: f64,
-    /// Length below the head, mm; by default as long as the nut needs.
+    /// Length below the head, mm; `None` for the length that the nut needs.
     pub length: Option<f64>,
-    /// Bodies that it passes through.
+    /// Names of the bodies that the screw passes through.
     pub meets: &'a [&'a str],
-    /// True for a hexagonal head, sunk into the part that it goes into.
+    /// True for a hexagonal head, which is sunk into the part under it.
     pub hex: bool,
 }
 
 impl<'a> Bolt<'a> {
-    /// A button-head screw that meets nothing. Its nut, if it gets one, is at height 0.
+    /// A button-head screw that passes through no body. Its nut, if it gets one, is at
+    /// height 0.
     pub fn new(name: &'a str, mount: Mount, at: Vector, head: f64, direction: Direction) -> Self {
         Self {
             name,
@@ -87,13 +89,14 @@ impl<'a> Builder<'a> {
         self.parts.bar / 2.0
     }
 
-    /// Outer radius around a pocket for a nut that leaves a wall at its corners, mm.
+    /// Outer radius of the material around a nut's pocket, so that a wall is left at the
+    /// nut's corners, mm.
     pub fn around_nut(&self) -> f64 {
         let corner = (self.parts.screw.nut + self.parts.fit) / f64::sqrt(3.0);
         self.half_bar().max(corner + self.parts.wall)
     }
 
-    /// Outer radius around a sunk head, with a wall, mm.
+    /// Outer radius of the material around a sunk screw head, wall included, mm.
     pub fn around_head(&self) -> f64 {
         let head = self.parts.screw.head / 2.0 + self.parts.fit;
         self.half_bar().max(head + self.parts.wall)
@@ -109,7 +112,7 @@ impl<'a> Builder<'a> {
         names::strut(self.slotted(), leg)
     }
 
-    /// A hole through which a screw turns.
+    /// A hole in which a screw can turn.
     pub fn hole(&self, centre: Vector) -> Shape {
         Shape::disc(
             centre,
@@ -159,7 +162,7 @@ impl<'a> Builder<'a> {
         self.body(name, Kind::Printed, mount, prisms);
     }
 
-    /// Records the bodies that the last one touches by design.
+    /// Records the bodies that the body added last touches by design.
     pub fn allow_contact<S: AsRef<str>>(&mut self, names: &[S]) {
         if let Some(body) = self.bodies.last_mut() {
             let names = names.iter().map(|name| name.as_ref().to_owned());
@@ -167,7 +170,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Adds a printed ring around a screw.
+    /// Adds a printed ring between two parts on a screw.
     pub fn spacer(&mut self, name: String, mount: Mount, centre: Vector, z: Span, meets: &[&str]) {
         let hole = self.hole(centre);
         let ring = Prism::new(
@@ -217,8 +220,8 @@ impl<'a> Builder<'a> {
         self.allow_contact(bolt.meets);
     }
 
-    /// Adds the screw of a joint on a servo's link. The link's underside holds its head,
-    /// which no key can reach once the link is on its servo.
+    /// Adds the screw of a joint on a servo's link. The link's underside holds the screw's
+    /// head, which no key can reach once the link is on its servo.
     pub fn held_joint(&mut self, name: &str, mount: Mount, at: Vector, top: f64, meets: &[&str]) {
         self.bolt(&Bolt {
             nut: top + PLAY,

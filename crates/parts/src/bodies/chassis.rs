@@ -13,16 +13,17 @@ use crate::layers::shape::Shape;
 
 /// Radius of a servo's spline, mm.
 pub const SPLINE: f64 = 2.4;
-/// Radius of the hole that a servo's own screw cuts its thread into, mm. One of the two
-/// is beside the notch for the lead, with 0.35 mm between them: there the screw holds on
-/// its three other sides.
+/// Radius of the hole that a servo's own screw cuts its thread into, mm. One of a servo's two
+/// holes is beside the notch for the lead, with 0.35 mm between hole and notch: there the screw
+/// holds on the three other sides.
 const PILOT: f64 = 0.75;
 
-/// Distance from a seat to the middle of its servo's number, and the number's shift outward, mm.
+/// Distance from a seat to the middle of its servo's number, and the number's outward shift from
+/// the servo's middle, mm.
 const NUMBER: f64 = 4.0;
 
-/// The holes of a UNO from its middle, with the USB socket behind, mm: in mil from a corner
-/// (550, 100), (600, 2000), (2600, 300), (2600, 1400).
+/// The holes of a UNO relative to its middle, with the USB socket behind, mm: (550, 100), (600,
+/// 2000), (2600, 300), (2600, 1400) mil from a corner.
 const UNO_HOLES: [(f64, f64); 4] = [
     (24.13, -20.32),
     (-24.13, -19.05),
@@ -48,7 +49,7 @@ pub fn add(builder: &mut Builder) {
     add_board(builder);
 }
 
-/// A servo's case from above, grown by `air` on each side.
+/// Outline of a servo's case from above, wider by `air` on each side.
 fn opening(builder: &Builder, servo: usize, air: f64) -> Shape {
     let body = &builder.parts.servo;
     let size = at(body.width + 2.0 * air, body.length + 2.0 * air);
@@ -63,14 +64,14 @@ fn inward(servo: usize) -> Vector {
     at(0.0, -End::of_servo(servo).sign())
 }
 
-/// The places of the two screws of a flange.
+/// The positions of the two screws that hold a servo's flange.
 fn flange_holes(builder: &Builder, servo: usize) -> [Vector; 2] {
     let half = inward(servo) * (builder.parts.servo.holes / 2.0);
     let middle = middle(builder, servo);
     [middle - half, middle + half]
 }
 
-/// The seat of a servo, grown by `more` on each side.
+/// Outline of a servo's seat, wider by `more` on each side.
 fn seat(builder: &Builder, servo: usize, more: f64) -> Shape {
     let body = &builder.parts.servo;
     let around = builder.parts.fit + builder.parts.wall + more;
@@ -78,8 +79,8 @@ fn seat(builder: &Builder, servo: usize, more: f64) -> Shape {
     Shape::rectangle(middle(builder, servo), size, 1.0)
 }
 
-/// The cut-outs that a servo needs in the plate and in its seat: its case, the notch for
-/// its lead, and the holes of its screws.
+/// The cut-outs that a servo needs in the plate and in its seat: for its case, for its lead, and
+/// for its screws.
 fn cutouts(builder: &Builder, servo: usize) -> Vec<Shape> {
     let (parts, outward) = (builder.parts, End::of_servo(servo).sign());
     let notch = leads::notch(&parts.servo, middle(builder, servo), parts.fit, outward);
@@ -97,7 +98,8 @@ fn add_plate(builder: &mut Builder) {
     let (stack, layout) = (builder.stack, builder.layout);
     let plate = layout.plate;
     let seats: Vec<_> = (0..4).map(|servo| seat(builder, servo, 0.0)).collect();
-    // The openings come before the holes of all servos: the order decides that of the files.
+    // First all openings, then all holes: the shapes appear in this order in the files, which
+    // must not change.
     let all: Vec<_> = (0..4).map(|servo| cutouts(builder, servo)).collect();
     let openings = all.iter().flat_map(|cut| &cut[..2]);
     let cut: Vec<_> = openings
@@ -128,7 +130,8 @@ fn add_plate(builder: &mut Builder) {
     builder.printed("plate", Mount::Chassis, prisms);
 }
 
-/// The piece of the plate around one servo and the pivots of its leg, to be printed first.
+/// The piece of the plate around one servo and the pivots of its leg, which is printed first, as
+/// a trial.
 pub fn corner(builder: &Builder, servo: usize) -> Vec<Prism> {
     /// Width of the plate around the seat, mm.
     const AROUND: f64 = 2.0;

@@ -1,4 +1,4 @@
-//! Head and tail: two couplers each, the left one below the right one.
+//! The couplers of head and tail, with their screws. The left coupler of each end lies below the right one.
 
 use lizard_kinematics::{End, Vector};
 
@@ -9,6 +9,7 @@ use crate::layers::body::{Mount, Prism, coupler_length};
 use crate::layers::shape::Shape;
 use crate::layers::stack::{PLAY, Span, Stack};
 
+/// Adds the couplers of both ends, the screws and spacers of their joints, and the decorative parts.
 pub fn add(builder: &mut Builder) {
     for end in End::ALL {
         let [left, right] = end.servos();
@@ -17,6 +18,7 @@ pub fn add(builder: &mut Builder) {
         } = builder.stack;
         add_bar(builder, left, lower);
         add_bar(builder, right, upper);
+        // The right coupler lies higher, so a spacer fills the gap between the crank and this coupler.
         for (servo, top, ring) in [(left, lower[1], None), (right, upper[1], Some(upper[0]))] {
             let tip = Vector::new(builder.layout.crank[servo], 0.0);
             let (mount, meets) = (Mount::Link(servo), [&*coupler(servo)]);
@@ -27,6 +29,7 @@ pub fn add(builder: &mut Builder) {
             }
             builder.held_joint(&format!("tip {name}"), mount, tip, top, &meets);
         }
+        // The screw of the end point joins both couplers and the decorative parts.
         let apex = Vector::new(coupler_length(builder.robot, left), 0.0);
         let looks = looks::add(builder, end);
         let mut meets: Vec<&str> = looks.on_right.iter().map(String::as_str).collect();
@@ -41,6 +44,8 @@ pub fn add(builder: &mut Builder) {
     }
 }
 
+/// Adds the coupler of a servo between the heights `z`. If a second screw holds a decorative part on it, the coupler
+/// has two layers, since the head of that screw may be sunk in the upper one.
 fn add_bar(builder: &mut Builder, servo: usize, z: Span) {
     let from = Vector::default();
     let to = Vector::new(coupler_length(builder.robot, servo), 0.0);

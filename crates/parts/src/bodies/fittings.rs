@@ -1,8 +1,8 @@
-//! The places of power supply, terminal strips, plugs and straps on the robot.
+//! Bodies of the power supply, the terminal strips, the plugs and the straps.
 //!
-//! Each of them is a body, so that the proof of fit and the mass include it. No part of the robot moves above the
-//! deck. So the deck has two wings beside the board for everything that must be reached by hand: on the right the
-//! parts of the battery's positive line; on the left, beside the board's pins, the signals.
+//! Each of these fittings is a body, so that the proof of fit and the mass include it. No part of the robot moves
+//! above the deck. So the deck has two wings beside the board for everything that must be reached by hand: on the
+//! right the parts of the battery's positive line; on the left, beside the board's pins, the signals.
 
 use lizard_kinematics::Vector;
 
@@ -12,13 +12,13 @@ use crate::layers::body::{Kind, Mount, Prism};
 use crate::layers::fitting::{Fitting, PITCH, STRAP};
 use crate::layers::shape::Shape;
 
-/// A slot for the battery's strap, mm: along the plate and across.
+/// Size of a slot for the battery's strap, mm: along the plate and across.
 const STRAP_SLOT: [f64; 2] = [17.0, 2.4];
-/// A slot for a cable tie, mm: along the plate and across.
+/// Size of a slot for a cable tie, mm: along the plate and across.
 const TIE_SLOT: [f64; 2] = [4.0, 2.0];
 /// Least distance of the terminal strips' middles from the plate's middle, mm.
 const STRIPS: f64 = 13.2;
-/// From the middle of the plate to the cable ties, which pass beside the battery's ends, mm.
+/// Distance from the middle of the plate to the cable ties, which pass beside the battery's ends, mm.
 const TIES: f64 = 31.5;
 /// Thickness of a cable tie, mm.
 const TIE: f64 = 1.6;
@@ -27,14 +27,14 @@ const TIE: f64 = 1.6;
 /// cover nuts of the sliders.
 const WING: [f64; 3] = [25.2, 51.2, 40.0];
 /// The openings of a wing, mm: from and to in x, away from the middle, then from and to in y. They save weight;
-/// between them is the arm that carries the wing.
+/// the material between them is the arm that carries the wing.
 const WING_OPENINGS: [[[f64; 2]; 2]; 2] = [
     [[32.5, 43.0], [-36.5, -26.0]],
     [[32.5, 43.0], [-12.0, 26.0]],
 ];
-/// Inner edge of the things on a wing, mm from the middle.
+/// Distance of the inner edge of the fittings on a wing from the middle, mm.
 const ON_WING: f64 = 29.5;
-/// The cable ties of a wing, mm from the middle: on the inner and on the outer side of what they hold.
+/// Distances of the cable ties of a wing from the middle, mm: on the inner and on the outer side of the fittings.
 const WING_TIES: [f64; 2] = [28.0, 48.4];
 /// Height of the round socket's middle above the board, and its length beyond the board's edge, mm.
 const SOCKET: [f64; 2] = [6.5, 2.0];
@@ -72,8 +72,8 @@ fn strips(builder: &Builder) -> f64 {
     STRIPS.max(lead + 0.3 + length(Fitting::Ground, 0) / 2.0)
 }
 
-/// The outlines of the deck's wings and of the arms that carry them from the holes of the
-/// board; and the holes in them.
+/// The outlines of the deck's wings and of the arms that carry them from the holes of the board; then the holes in
+/// the wings.
 pub fn wings(holes: [(f64, f64); 4]) -> [Vec<Shape>; 2] {
     let [inner, outer, half] = WING;
     let middle = (inner + outer) / 2.0;
@@ -91,7 +91,7 @@ pub fn wings(holes: [(f64, f64); 4]) -> [Vec<Shape>; 2] {
     for (x, y) in holes {
         add.push(Shape::bar(at(x, y), at(middle.copysign(x), y), 5.0));
     }
-    // This tie is behind the resistors, whose wires lie beside the middle of the strip.
+    // The ties of the signal strip are behind the resistors, whose wires lie beside the middle of the strip.
     for x in WING_TIES {
         cut.push(slot(-x, signals() - 11.0, TIE_SLOT));
     }
@@ -110,27 +110,30 @@ fn length(fitting: Fitting, axis: usize) -> f64 {
     fitting.facts().size[axis]
 }
 
-/// The middle of the signal strip, mm ahead of the plate's: it begins at the wing's rear.
+/// Position of the middle of the signal strip, mm ahead of the plate's middle. The strip begins at the wing's rear
+/// end.
 fn signals() -> f64 {
     0.5 - WING[2] + length(Fitting::Signals, 1) / 2.0
 }
 
-/// The middle of the fuse, at the wing's front.
+/// Position of the fuse's middle, mm ahead of the plate's middle. The fuse is at the wing's front end.
 fn fuse() -> f64 {
     WING[2] - 0.5 - length(Fitting::Fuse, 1) / 2.0
 }
 
-/// The middle of the switch, at the wing's rear end, which its cable tie goes around.
+/// Position of the switch's middle, mm ahead of the plate's middle. The switch is at the wing's rear end, which
+/// its cable tie goes around.
 fn switch() -> f64 {
     0.3 - WING[2] + length(Fitting::Switch, 1) / 2.0
 }
 
+/// Position of the slot for the switch's cable tie, in front of the switch, mm ahead of the plate's middle.
 fn tie_of_switch() -> f64 {
     switch() + length(Fitting::Switch, 1) / 2.0 + 1.2
 }
 
-/// Distance of the strap's slots from the plate's middle, mm; `None` if the plate is no
-/// wider than the battery, so that the strap goes around both.
+/// Distance of the strap's slots from the plate's middle, mm; `None` if the plate is too narrow for slots beside
+/// the battery, so that the strap goes around battery and plate.
 fn strap_slot_x(builder: &Builder) -> Option<f64> {
     let [across, _, _] = builder.parts.battery;
     let x = (across + STRAP[1]) / 2.0;
@@ -174,13 +177,14 @@ fn add_sized_block(
 /// Adds the fittings under the deck and under the plate.
 fn add_below_plate(builder: &mut Builder) {
     let stack = builder.stack;
-    // Below the strap and the heads of the standoffs' screws.
+    // The fittings hang below the strap and the heads of the standoffs' screws.
     let belly = stack.plate[0] - STRAP[1].max(builder.parts.screw.head_height) - 0.3;
     let deck = stack.deck[0];
     let room = STANDOFFS[1] - 3.4;
     let half = |fitting: Fitting| length(fitting, 1) / 2.0;
     let strips = strips(builder);
-    // The strip for ground reaches this far to either side, and the others end there.
+    // The ground strip reaches this far forward and back; the supply strip ends there in front, the capacitor
+    // behind.
     let strip = half(Fitting::Ground);
     let supply = strip - half(Fitting::Supply);
     let capacitor = half(Fitting::Capacitor) - strip;

@@ -1,9 +1,9 @@
-//! The joints that determine the places of the bodies, for any number type.
+//! The joints that determine the placements of the bodies, for any number type.
 
 use lizard_kinematics::{End, FiveBarPose, Lizard, Real, Side, SliderPose, Solution, Vector};
 
-/// Joints computed from the directions of the cranks, of which some may be unknown. Joints that depend on an unknown
-/// crank are meaningless.
+/// The directions of the cranks, from which the joints are computed. Some directions may be unknown; joints that
+/// depend on an unknown direction are meaningless.
 pub struct Cranks<'a, T> {
     /// The robot's dimensions.
     pub lizard: &'a Lizard,

@@ -1,5 +1,5 @@
-//! The robot's plan from above: pivots, anchors and lengths of links, all of it
-//! independent of the pose.
+//! The robot seen from above: pivots, anchors and lengths of links, all of them independent
+//! of the pose.
 
 use lizard_kinematics::{End, Side, Vector};
 use lizard_robot::servo::ARM_SIDE;
@@ -8,19 +8,20 @@ use lizard_robot::{LegPlan, Plate, Robot};
 /// Distance of the standoffs from the plate's middle, mm: to the right, forward.
 pub const STANDOFFS: [f64; 2] = [8.0, 39.0];
 
-/// Radius of a standoff, mm: 5.5 mm over flats.
+/// Radius of the circle around a hexagonal standoff of 5.5 mm over flats, mm.
 pub const STANDOFF: f64 = 3.2;
-/// An Arduino UNO, mm: its board of 2700 x 2100 mil, and the height of what stands on it.
+/// Size of an Arduino UNO, mm: its board of 2700 x 2100 mil, and the height from the
+/// board's underside to the top of its parts.
 pub const UNO: [f64; 3] = [53.34, 68.58, 12.0];
-/// Thickness of its board, mm.
+/// Thickness of an Arduino UNO's board, mm.
 pub const UNO_BOARD: f64 = 1.6;
 
-/// The pivots of all moving bodies, and their distances on each body.
+/// The pivots of all moving bodies, and the lengths of the servos' links.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layout {
     /// The servos' shafts, mm, chassis frame, servo order.
     pub shafts: [Vector; 4],
-    /// 1 if a link's arm is counter-clockwise from its crank, otherwise -1.
+    /// The side of a link's arm: 1 if it is counter-clockwise from the crank, otherwise -1.
     pub hand: [f64; 4],
     /// Length of the cranks of head and tail, mm.
     pub crank: [f64; 4],

@@ -16,22 +16,23 @@ use crate::layers::shape::Shape;
 
 /// Width and thickness of a lead, mm.
 pub const LEAD: [f64; 2] = [4.0, 1.2];
-/// Width of a notch beyond that of a lead, mm.
+/// Clearance of a lead in its notch, in the width, mm.
 const NOTCH_PLAY: f64 = 1.0;
-/// From the bottom of the case to the lead's lower edge, and the height that it takes, mm.
+/// Height of a lead's lower edge above the bottom of the case, and the height of the lead
+/// on edge, mm.
 const LEAD_EXIT: [f64; 2] = [3.0, 4.0];
-/// Length that stands out of the case before the fold, mm.
+/// Length of lead that sticks out of the case before the fold, mm.
 const BEND: f64 = 4.0;
-/// A hole for the leads and the wires, mm: across and along the plate.
+/// Size of a hole for the leads and the wires, mm: across and along the plate.
 const WIRES: [f64; 2] = [8.4, 6.0];
-/// Distance of such a hole beyond the standoffs, mm.
+/// Distance of such a hole's middle beyond the middles of the standoffs, mm.
 const HOLE_BEYOND_STANDOFFS: f64 = 2.0;
 
-/// The notch in a servo's opening. `fit` is the air on each side, `outward` the direction
-/// of the shaft's end: 1 forward, -1 back.
+/// The notch for the lead in a servo's opening. `fit` is the clearance on each side,
+/// `outward` the direction of the shaft's end of the case: 1 forward, -1 back.
 pub fn notch(body: &ServoBody, middle: Vector, fit: f64, outward: f64) -> Shape {
     let reach = body.length / 2.0 + LEAD[1] + fit;
-    // The notch begins within the case's own opening.
+    // The notch overlaps the opening for the case.
     let from = body.length / 2.0 - 2.0;
     let half = (LEAD[0] + NOTCH_PLAY) / 2.0;
     let corner = |x: f64, y: f64| middle + Vector::new(x, outward * y);

@@ -1,8 +1,8 @@
 //! The legs: crank, follower, coupler with the foot, and the screws that join them.
 //!
 //! A stiff robot on four stiff feet rocks: two diagonal feet carry nearly all of its weight. So each foot is on a
-//! leaf spring, and a screw sets its height. High above the floor, the friction of the pad would bend the leaf and
-//! turn the foot. So a column leads down to a low leaf.
+//! leaf spring, and a screw sets its height. If the leaf were high above the floor, the friction of the pad would
+//! bend it and turn the foot. So a column reaches down to a low leaf.
 
 use lizard_kinematics::Vector;
 use lizard_robot::LegPlan;
@@ -16,11 +16,11 @@ use crate::layers::stack::{LEAF, PAD_LIP, PLAY};
 
 /// Radius of the boss around a foot's nut, mm.
 const TIP: f64 = 5.0;
-/// From the follower's joint to the two screws of the foot's column, mm.
+/// Distances from the follower's joint to the two screws of the foot's column, mm.
 const CLAMPS: [f64; 2] = [21.0, 9.0];
-/// Length of these screws, which cut their thread into the column, mm.
+/// Length of the screws between coupler and column, which cut their thread into the column, mm.
 const CLAMP_SCREW: f64 = 10.0;
-/// Depth of the holes for these screws, mm.
+/// Depth of the holes for the screws between coupler and column, mm.
 const CLAMP_HOLE: f64 = 10.0;
 /// Half the width of the column, mm.
 const COLUMN: f64 = 3.2;
@@ -97,7 +97,8 @@ fn clamps(builder: &Builder) -> [Vector; 2] {
     CLAMPS.map(|before| Vector::new(ground - before, 0.0))
 }
 
-/// Height of the faces under the heads of these screws, sunk into the coupler, mm.
+/// Height of the faces under the heads of the screws between coupler and foot, which are sunk into the coupler,
+/// mm.
 fn clamp_seat(builder: &Builder) -> f64 {
     builder.stack.leg_coupler[1] - builder.parts.screw.head_height - PLAY
 }

@@ -1,7 +1,7 @@
-//! The bodies that a servo turns: its horn and the link that is pushed over it.
+//! The bodies that a servo turns: its horn and the link that is pushed over the horn.
 //!
-//! One part is the crank of head or tail, the arm of a slider and the anchor of the
-//! leg's strut; so one servo moves all three.
+//! The link is at once the crank of head or tail, the arm of a slider and the anchor of the leg's
+//! strut; so one servo moves all three.
 
 use lizard_kinematics::Vector;
 use lizard_robot::Horn;
@@ -13,16 +13,16 @@ use crate::layers::body::{Kind, Mount, Prism};
 use crate::layers::shape::Shape;
 use crate::layers::stack::{PLAY, Span};
 
-/// Places of the horn's small screws along its arm, as shares of its length.
+/// Positions of the horn's small screws along its arm, as shares of the arm's length.
 const HORN_SCREWS: [f64; 2] = [0.52, 0.83];
-/// Radius of the hole that such a screw cuts its thread into, mm.
+/// Radius of the hole that a horn's small screw cuts its thread into, mm.
 const PILOT: f64 = 0.7;
-/// Length of such a screw, mm: one of 5 mm would reach the servo's boss under the link.
-/// Below it, radius and height of the screw's head, mm.
+/// Length of a horn's small screw, mm: one of 5 mm would reach the servo's boss under the link.
 pub const HORN_SCREW: f64 = 4.0;
+/// Radius and height of the head of a horn's small screw, mm.
 const HORN_SCREW_HEAD: [f64; 2] = [1.5, 1.0];
 
-/// Wall of the ring between strut and link, mm: the spring's coil leaves room for no more.
+/// Wall of the ring between strut and link, mm: the spring's coil leaves no room for more.
 const RING: f64 = 1.1;
 
 /// Clearance on each side of a horn's arm in its pocket, in multiples of `fit`: horns vary in size.
@@ -82,7 +82,7 @@ fn add_link(builder: &mut Builder, servo: usize) {
     let anchor = layout.legs[servo].anchor;
     let half = builder.half_bar();
     let round = parts.horn.hub / 2.0 + 2.0 * parts.fit + 1.5 * parts.wall;
-    // Without it the link would break in the corner between crank and arm.
+    // Without this brace the link would break in the corner between crank and arm.
     let brace = Shape::hull(&[hub, tip * 0.45, side * 0.45], 0.6 * half);
     let add = vec![
         Shape::disc(hub, round),
@@ -99,7 +99,7 @@ fn add_link(builder: &mut Builder, servo: usize) {
     let pocket = arm(&parts.horn, POCKET * parts.fit);
     let anchor_hole = builder.hole(anchor);
     let [low, high] = stack.link;
-    // The holes and pockets, each with its heights.
+    // The holes and pockets, each with the heights between which it is cut.
     let cuts = [
         (&holes[..], [low, high]),
         (
@@ -126,7 +126,7 @@ fn add_link(builder: &mut Builder, servo: usize) {
     builder.allow_contact(&[format!("servo {name}")]);
 }
 
-/// The places of the small screws that hold the horn.
+/// The positions of the small screws that hold the horn.
 fn horn_holes(horn: &Horn) -> [Vector; 2] {
     HORN_SCREWS.map(|share| Vector::new(share * horn.arm, 0.0))
 }
@@ -147,7 +147,7 @@ fn add_horn_screws(builder: &mut Builder, servo: usize) {
     }
 }
 
-/// The screw that holds the strut, and the ring that fills the gap below the link.
+/// Adds the screw that holds the strut, and the ring that fills the gap below the link.
 fn add_anchor(builder: &mut Builder, servo: usize) {
     let (name, leg) = names(servo);
     let (stack, parts) = (builder.stack, builder.parts);

@@ -1,9 +1,9 @@
 //! The parts that make the robot look like a lizard: two long links behind the tail's
 //! point, as the paper's robot has them, and a head ahead of the head's point.
 //!
-//! They drive nothing. The screw of the end point and a second screw hold each of them on
-//! a coupler, with which it turns: the left tail link under the lower coupler, the right
-//! one and the head on the upper one. At neutral they point straight back and ahead.
+//! They drive nothing. The screw of the end point and a second screw hold each of these parts on a coupler, with
+//! which it turns: the left tail link under the lower coupler, the right one and the head on the upper coupler.
+//! At neutral they point straight back and ahead.
 
 use lizard_kinematics::{End, Solution, Vector};
 
@@ -13,27 +13,27 @@ use crate::layers::body::{Mount, Prism, at_end, coupler_length};
 use crate::layers::shape::Shape;
 use crate::layers::stack::PLAY;
 
-/// Thickness of these parts, mm.
+/// Thickness of a decorative part, mm.
 const THICK: f64 = 3.0;
-/// From the point to the second screw, mm.
+/// Distance from the end point to the second screw, mm.
 const BACK: f64 = 14.0;
-/// Length of that screw, which cuts its thread, mm.
+/// Length of the second screw, which cuts its own thread, mm.
 const SCREW: f64 = 6.0;
 /// Angle of each tail link from straight back, deg.
 const APART: f64 = 3.5;
 
-/// The parts that an end carries beyond its couplers.
+/// The decorative parts that an end carries beyond its couplers.
 #[derive(Default)]
 pub struct Looks {
-    /// Thickness under the lower coupler at the point, mm.
+    /// Thickness of the part under the lower coupler at the end point, mm; 0 without one.
     pub below: f64,
-    /// Thickness on the upper coupler, mm.
+    /// Thickness of the part on the upper coupler, mm; 0 without one.
     pub above: f64,
     /// Names of the bodies on the upper coupler.
     pub on_right: Vec<String>,
 }
 
-/// Length of an end's decorative part beyond its point, mm; 0 without one.
+/// Length of an end's decorative part beyond its end point, mm; 0 without one.
 fn length(builder: &Builder, end: End) -> f64 {
     match end {
         End::Head => builder.parts.head,
@@ -41,8 +41,8 @@ fn length(builder: &Builder, end: End) -> f64 {
     }
 }
 
-/// The hole for the second screw in a coupler that carries such a part: in the coupler's lower layer, and in its
-/// upper one, where the head of a screw from above is sunk.
+/// The hole for the second screw in a coupler: in the coupler's lower layer, and in its upper one, where the
+/// head of a screw from above is sunk. `None` for a coupler that carries no decorative part.
 pub fn second_screw_holes(builder: &Builder, servo: usize, point: Vector) -> Option<[Shape; 2]> {
     let (end, hand) = at_end(servo);
     let at = point - Vector::new(BACK, 0.0);
@@ -80,10 +80,10 @@ pub fn add(builder: &mut Builder, end: End) -> Looks {
     }
 }
 
-/// A flat part: filled shapes and holes.
+/// A flat part: its filled shapes and its holes.
 type Flat = (Vec<Shape>, Vec<Shape>);
 
-/// The point of an end, and the outward direction there at neutral, in a coupler's frame.
+/// An end's point, and the direction that points outward at neutral, both in a coupler's frame.
 fn outward(builder: &Builder, servo: usize, neutral: &Solution) -> [Vector; 2] {
     let (end, hand) = at_end(servo);
     let bars = neutral.end(end);
@@ -100,7 +100,7 @@ fn turned(direction: Vector, by: f64) -> Vector {
 
 fn tail(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> Flat {
     let [point, straight] = outward(builder, servo, neutral);
-    // The left link points to the robot's left, the right one to its right.
+    // The left tail link points to the robot's left, the right one to its right.
     let (_, hand) = at_end(servo);
     let outward = turned(straight, if hand == 0 { -APART } else { APART });
     let half = builder.half_bar();
@@ -112,8 +112,9 @@ fn tail(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> Fla
 }
 
 fn head(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> Flat {
-    /// Radius of the corners, and of an eye, mm.
+    /// Radius of the corners, mm.
     const ROUND: f64 = 7.0;
+    /// Radius of an eye, mm.
     const EYE: f64 = 2.5;
     let [point, way] = outward(builder, servo, neutral);
     let at = |ahead: f64, left: f64| point + way * ahead + way.left() * left;
@@ -137,7 +138,7 @@ fn head(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> Fla
     (add, cut)
 }
 
-/// The place of the second screw in a coupler's frame.
+/// The position of the second screw in a coupler's frame.
 fn second(builder: &Builder, servo: usize) -> Vector {
     Vector::new(coupler_length(builder.robot, servo) - BACK, 0.0)
 }
@@ -156,7 +157,7 @@ fn add_under_lower_link(builder: &mut Builder, servo: usize, (add, mut cut): Fla
     let z = [high - THICK, high];
     let name = format!("tail {}", names(servo).0);
     builder.printed(&name, Mount::Coupler(servo), [Prism::new(add, cut, z)]);
-    // The upper coupler turns over this head.
+    // The upper coupler turns over the screw's head, which therefore is sunk.
     let seat = builder.stack.lower[1] - builder.parts.screw.head_height - PLAY;
     add_screw(builder, &name, servo, seat);
 }

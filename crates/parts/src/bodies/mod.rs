@@ -1,7 +1,8 @@
-//! The bodies of the robot, and where each is at a pose.
+//! The bodies of the robot, and their placements at a pose.
 //!
-//! A robot has some eighty bodies: printed parts, servos, screws, a board, a battery. Each file here makes the
-//! bodies of one area of the robot from its robot.toml; [`assembly`] has them all and moves them.
+//! A robot has some eighty bodies: printed parts, servos, screws, a board, a battery. Each module here makes
+//! the bodies of one area of the robot from its robot.toml; [`assembly`] collects all of them and places them
+//! at a pose.
 
 pub(crate) mod assembly;
 pub(crate) mod builder;

@@ -5,9 +5,9 @@
 //! side on the bed. Its underside has a hole for the hex key. The screw's head snaps in from above, through a mouth
 //! that is narrower than the head.
 //!
-//! A strip with a grain, as of climbing skin, can be glued along the dome from head to tail. Its front
-//! end is folded up into a notch of the rim, so that no edge of the floor meets it, and the notch
-//! shows how the pad has to be turned. At the notch the dome has terraces.
+//! A strip with a grain, for example of climbing skin, can be glued along the dome from head to tail. Its front end
+//! is folded up into a notch of the rim, so that it does not catch on an edge of the floor, and the notch shows how
+//! the pad has to be turned. At the notch the dome has terraces.
 
 use lizard_kinematics::Vector;
 use lizard_robot::Parts;
@@ -18,7 +18,7 @@ use crate::layers::stack::PAD_LIP;
 
 /// Radius of the hole for a 2 mm hex key, which is 2.3 mm over its corners, mm.
 const KEY_HOLE: f64 = 1.6;
-/// Width of the rim around this hole, two printed lines, mm.
+/// Width of the rim around the key's hole, two printed lines, mm.
 const RIM: f64 = 0.8;
 /// Difference in radius between the screw's head and the narrower mouth above it, mm.
 const SNAP: f64 = 0.65;
@@ -26,9 +26,9 @@ const SNAP: f64 = 0.65;
 const CONE: f64 = 0.1;
 /// Depth of the notch for the end of a strip, mm: as thick as a strip may be.
 pub(crate) const NOTCH: f64 = 1.5;
-/// Least width of a strip, mm: wider than the hole for the key.
+/// Least width of a strip, mm: wider than the key's hole.
 const STRIP: f64 = 5.0;
-/// Least material under the head, mm.
+/// Least thickness of material under the screw's head, mm.
 const UNDER_HEAD: f64 = 1.0;
 
 /// The least height of a pad, mm.
@@ -47,8 +47,8 @@ pub(crate) fn strip_widths(parts: &Parts) -> [f64; 2] {
     [STRIP, 0.7 * parts.pad.width - 2.0 * parts.fit]
 }
 
-/// The notch in the rim of a pad, with the robot's head in a direction of length one. Its first side
-/// runs to the robot's right.
+/// The notch in the rim of a pad. `head` is the direction of the robot's head, of length one. The first side of the
+/// shape runs to the robot's right.
 fn notch(parts: &Parts, point: Vector, head: Vector) -> Shape {
     let right = Vector::new(head.y, -head.x);
     let (wide, half) = (parts.strip / 2.0 + parts.fit, parts.pad.width / 2.0);
@@ -65,7 +65,7 @@ fn notch(parts: &Parts, point: Vector, head: Vector) -> Shape {
     }
 }
 
-/// The layers of a pad from the floor up, with the robot's head in a direction of length one.
+/// The layers of a pad from the floor up. `head` is the direction of the robot's head, of length one.
 pub(crate) fn layers(parts: &Parts, point: Vector, floor: f64, head: Vector) -> Vec<Prism> {
     let (pad, screw) = (parts.pad, parts.screw);
     let half = pad.width / 2.0;

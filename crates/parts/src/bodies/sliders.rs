@@ -1,7 +1,8 @@
 //! The sliders: a rod in a sleeve between the arms of a front and a rear servo.
 //!
 //! A sleeve between the pins would be too short for the stroke. So sleeve and rod lie
-//! beside the pins, the sleeve begins at the rear pin, and the rod may pass that pin.
+//! beside the line of the pins, the sleeve begins at the rear pin, and the rod may pass
+//! that pin.
 
 use lizard_kinematics::{Side, Vector};
 use lizard_robot::Robot;
@@ -11,13 +12,13 @@ use crate::bodies::names::names;
 use crate::layers::body::{Mount, Prism};
 use crate::layers::shape::Shape;
 
-/// Offset of sleeve and rod from the pins, outward, mm.
+/// Offset of sleeve and rod from the line of the pins, outward, mm.
 pub const BESIDE: f64 = 9.0;
 /// Width of a rod, mm.
 pub(crate) const ROD: f64 = 6.0;
 /// The least length of the rod inside its sleeve, mm.
 const OVERLAP: f64 = 20.0;
-/// Gap between the sleeve's end and the front pin at the shortest stroke, mm.
+/// Least gap between the sleeve's end and the front pin, at the shortest stroke, mm.
 const SHORTEST_GAP: f64 = 8.0;
 
 /// Lengths of one slider, mm.
@@ -27,7 +28,7 @@ pub struct SliderLengths {
     pub sleeve: f64,
     /// Length of the rod, from the front pin to its rear end.
     pub rod: f64,
-    /// Offset of sleeve and rod from the pins' line, positive to the left.
+    /// Offset of sleeve and rod from the line of the pins, mm, positive to the left.
     pub beside: f64,
 }
 
@@ -60,9 +61,9 @@ fn add_sleeve(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
     let outer = bore + 2.0 * parts.wall;
     let middle = Vector::new(lengths.sleeve / 2.0, lengths.beside);
     let case = Shape::rectangle(middle, Vector::new(lengths.sleeve, outer), 0.8);
-    // The sleeve's corners must not stand out beyond the eye's arm.
+    // The sleeve's corners must not stick out beyond the arm of its eye.
     let arm = Shape::bar(pin, Vector::new(half, lengths.beside), half - 0.02);
-    // The bore is open at both ends, for as far as the rod reaches.
+    // The bore is open at both ends, so the cut is longer than the rod can reach.
     let size = Vector::new(lengths.sleeve + 2.0 * lengths.rod, bore);
     let open = Shape::rectangle(middle, size, 0.0);
     let eye = [Shape::disc(pin, half), arm, case.clone()];
@@ -85,7 +86,7 @@ fn add_rod(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
     let pin = Vector::default();
     let middle = Vector::new(-lengths.rod / 2.0, lengths.beside);
     let bar = Shape::rectangle(middle, Vector::new(lengths.rod, ROD), 1.0);
-    // The bend lies ahead of the pin, so that the sleeve may come near.
+    // The bend lies ahead of the pin, so that the sleeve may come near the pin.
     let bend = Shape::bar(pin, Vector::new(1.0, lengths.beside), half - 0.02);
     let add = [Shape::disc(pin, half), bend, bar];
     let prism = Prism::new(add, [builder.hole(pin)], builder.stack.rod);

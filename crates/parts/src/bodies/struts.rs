@@ -1,15 +1,16 @@
 //! The strut between a servo's link and its leg: one with a spring, or a rigid one.
 //!
-//! A strut with a spring has a hole at the servo's end, a slot at the leg's end, and the spring between both
-//! screws. The spring pulls the leg's screw against the slot's inner end, so the leg follows its servo exactly
-//! until the force on the foot exceeds the spring's pull. Then the screw moves along the slot.
+//! A strut with a spring has a hole at the servo's end, a slot at the leg's end, and the spring between the
+//! screws in both. The spring pulls the leg's screw against the slot's inner end, so the leg follows its servo
+//! exactly until the force on the foot exceeds the spring's pull. Then the screw moves along the slot.
 //!
-//! An installed spring is stretched, and so is its coil. It reaches nearly from screw to screw, and farther when
-//! the leg lags. So the strut is a channel, and the coil lies on its floor along its whole length.
+//! An installed spring is stretched, and so is its coil. The coil reaches nearly from screw to screw, and
+//! becomes longer when the leg lags. So the strut is a channel, and the coil lies on its floor along its whole
+//! length.
 //!
-//! A rigid strut is a bar with two holes in the same places, for the same screws. It fits
-//! in the space of the one with a spring, so either can replace the other, and it has at
-//! least the same distance from all other parts.
+//! A rigid strut is a bar with two holes in the same places, for the same screws. It fits in the space of a
+//! strut with a spring, so either can replace the other, and its distance from all other parts is at least as
+//! large.
 
 use lizard_kinematics::Vector;
 use lizard_robot::SLOT;
@@ -54,7 +55,7 @@ fn at(x: f64) -> Vector {
     Vector::new(x, 0.0)
 }
 
-/// Half the width of the channel that spring, hooks and heads lie in, mm.
+/// Half the width of the channel in which spring, hooks and screw heads lie, mm.
 fn channel(builder: &Builder) -> f64 {
     let parts = builder.parts;
     let spring = parts.spring.outer / 2.0 + 1.5 * parts.fit;
@@ -86,14 +87,14 @@ fn add_spring(builder: &mut Builder, servo: usize) {
     let (stack, parts) = (builder.stack, builder.parts);
     let length = builder.layout.legs[servo].strut_length;
     let radius = parts.spring.outer / 2.0;
-    // Each hook lies around the far side of its screw; between both is the coil.
+    // Each hook lies around the far side of its screw; the coil is between both hooks.
     let hook = parts.spring.outer - 2.0 * parts.spring.wire;
     let size = Vector::new(builder.robot.hung() - 2.0 * hook, parts.spring.outer);
     let coil = Shape::rectangle(at(length / 2.0), size, 0.0);
     let coil = Prism::solid([coil], [stack.coil - radius, stack.coil + radius]);
     let (spring, mount) = (format!("spring {leg}"), Mount::Strut(servo));
     builder.body(spring, Kind::Spring, mount, [coil]);
-    // The heads lie over the hooks and reach to the coil's ends.
+    // The screw heads lie over the hooks and reach to the coil's ends.
     builder.allow_contact(&[
         format!("screw leg anchor {leg}"),
         format!("screw anchor {name}"),

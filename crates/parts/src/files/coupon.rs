@@ -1,8 +1,8 @@
 //! A fit coupon: an hour of printing that shows which `fit` a printer needs.
 //!
-//! Each column has another fit, 0.0 to 0.4 mm from the left, marked by one to five dots:
-//! an M3 hole, a horn's pocket, a servo's opening with the notch for its lead, a piece of
-//! a sleeve. Use the first column in which all of them go together by hand.
+//! Each column has another fit, 0.0 to 0.4 mm from the left, marked by one to five dots: an M3
+//! hole, a horn's pocket, a servo's opening with the notch for its lead, a piece of a sleeve. Use
+//! the first column in which all of these can be assembled by hand.
 
 use lizard_kinematics::Vector;
 use lizard_robot::Parts;
@@ -15,21 +15,24 @@ use crate::layers::placement::Placement;
 use crate::layers::shape::Shape;
 use crate::part::Part;
 
-/// Columns, and the step of the fit, mm.
+/// Number of columns.
 const COLUMNS: u32 = 5;
+/// Difference of the fit from column to column, mm.
 const STEP: f64 = 0.1;
-/// Thickness of the coupon, and of the floor of its pockets, mm.
+/// Thickness of the coupon, mm.
 const THICK: f64 = 4.0;
+/// Thickness of the floor of the coupon's pockets, mm.
 const FLOOR: f64 = 1.8;
-/// Length of a piece of a sleeve, and of the rod to try in it, mm.
+/// Length of a piece of a sleeve, mm.
 const SLEEVE: f64 = 10.0;
+/// Length of the piece of rod to try in a sleeve, mm.
 const GAUGE: f64 = 30.0;
 
-/// The coupon, and a piece of rod to try its sleeves with.
+/// The coupon, and a piece of rod to try in its sleeves.
 pub fn coupon(parts: &Parts) -> [Part; 2] {
     let (servo, horn) = (&parts.servo, &parts.horn);
     let pitch = servo.width + 2.0 * STEP * f64::from(COLUMNS) + 4.0;
-    // From the lower edge up: opening, pocket, hole and dots, sleeve.
+    // From the lower edge up: opening, pocket, hole with dots, sleeve.
     let max = STEP * f64::from(COLUMNS);
     let opening = 3.0 + LEAD[1] + max + servo.length / 2.0;
     let pocket = opening + servo.length / 2.0 + max + 3.0 + horn.hub / 2.0;
@@ -74,7 +77,8 @@ pub fn coupon(parts: &Parts) -> [Part; 2] {
         Prism::new([plate.clone()], floor, [0.0, FLOOR]),
         Prism::new([plate], below, [FLOOR, THICK]),
     ];
-    // Each sleeve is two fits higher than the previous one, so the roofs begin one after another.
+    // Each sleeve is two fits higher than the previous one, so its roof begins higher: each layer
+    // has one bore less.
     let mut low = THICK;
     for (column, roof) in roofs.into_iter().enumerate() {
         prisms.push(Prism::new(&*walls, &bores[column..], [low, roof]));

@@ -1,4 +1,4 @@
-//! A sheet as a DXF file of AutoCAD's release 12, which every cutter's program reads.
+//! A sheet as a DXF file of AutoCAD's release 12, which every program for a cutter reads.
 //!
 //! This is our own writer, for four entities, because the crate that writes DXF depends
 //! on an image decoder and a calendar.

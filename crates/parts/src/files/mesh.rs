@@ -10,9 +10,9 @@ use lizard_kinematics::Vector;
 use crate::files::solid::{Face, Solid, Surface, progress};
 use crate::layers::outline::Side;
 
-/// Largest distance of a chord from its arc, mm.
+/// Largest distance between a chord and its arc, mm.
 const CHORD: f64 = 0.01;
-/// The largest angle of a chord, rad: 36 to a circle.
+/// Largest angle of an arc that a chord spans, rad: at least 36 chords to a circle.
 const ANGLE: f64 = std::f64::consts::TAU / 36.0;
 
 /// A surface of triangles, counter-clockwise seen from outside.
@@ -25,7 +25,7 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// The triangles of a surface.
+    /// Divides a surface into triangles.
     ///
     /// # Panics
     /// Never for a closed surface.
@@ -77,8 +77,9 @@ impl Mesh {
 struct MeshBuilder<'a> {
     solid: &'a Solid,
     mesh: Mesh,
+    /// Index in the mesh of each corner, by its point and its height.
     at: BTreeMap<(usize, usize), usize>,
-    /// Each edge's corners from its first end to its second.
+    /// The corners of each edge, from its first end point to its second.
     lines: Vec<Vec<usize>>,
 }
 
@@ -114,7 +115,7 @@ impl MeshBuilder<'_> {
         line
     }
 
-    /// The corners of a trail of edges, without the last.
+    /// The corners of a sequence of edges, without the last corner.
     fn trail(&self, edges: &[(usize, bool)]) -> Vec<usize> {
         let mut trail = Vec::new();
         for &(edge, forward) in edges {
@@ -210,7 +211,7 @@ impl MeshBuilder<'_> {
 }
 
 /// Divides triangles at the corners that lie on their sides. The triangulation leaves out points on a straight
-/// line, but walls and other triangles have corners there.
+/// line, but walls and other triangles have corners at these points.
 fn fill(triangles: &mut Vec<[usize; 3]>, corners: &[(usize, Vector)]) {
     let mut done = 0;
     while done < triangles.len() {
@@ -226,7 +227,7 @@ fn fill(triangles: &mut Vec<[usize; 3]>, corners: &[(usize, Vector)]) {
         };
         triangles.swap_remove(done);
         if within.contains(&c) {
-            // The triangle has no area, and its neighbours meet without it.
+            // The triangle has no area, and its neighbours touch each other without it.
             continue;
         }
         let chain = [&[a][..], &within, &[b]].concat();
@@ -234,7 +235,7 @@ fn fill(triangles: &mut Vec<[usize; 3]>, corners: &[(usize, Vector)]) {
     }
 }
 
-/// The corners on the line between two others, in order.
+/// The corners on the line between two others, in order; the two are not included.
 fn between(corners: &[(usize, Vector)], a: usize, b: usize) -> Vec<usize> {
     let find = |which: usize| corners.iter().find(|(corner, _)| *corner == which);
     let (Some(&(_, from)), Some(&(_, to))) = (find(a), find(b)) else {

@@ -1,7 +1,7 @@
 //! The files of a part: solid, mesh, and drawings for cutting it from a sheet.
 //!
-//! A printer wants triangles without a gap, a drawing program exact surfaces, a laser closed
-//! lines. All are made of the same layers, so they cannot contradict each other.
+//! A printer needs triangles without a gap, a drawing program exact surfaces, a laser closed
+//! lines. All files are made from the same layers, so they cannot contradict each other.
 
 pub(crate) mod coupon;
 pub(crate) mod dxf;
@@ -39,7 +39,7 @@ impl File {
 /// The files of a part: STEP and STL, and DXF and SVG if it can be cut from a sheet.
 ///
 /// # Errors
-/// Returns [`Unfit::Surface`] for a part whose layers do not make a body.
+/// Returns [`Unfit::Surface`] for a part whose layers do not form a closed surface.
 pub fn part_files(part: &Part, kerf: f64) -> Result<Vec<File>, Unfit> {
     let solid = Solid::of(&part.prisms);
     let printed = Solid::of(&part.printed().0);

@@ -1,7 +1,7 @@
 //! Drawings of parts to cut from a sheet: outlines to cut through, pockets to mill.
 //!
-//! A part can be cut if all of its layers have the same outer outline. Plate and deck do not have that; each of
-//! their layers is a sheet, and the sheets are glued together.
+//! A part can be cut if all of its layers have the same outer outline. The layers of plate and deck differ; each of
+//! them becomes a sheet, and the sheets are glued together.
 
 use lizard_kinematics::Vector;
 
@@ -25,7 +25,7 @@ pub struct Sheet {
 pub struct Layer {
     /// `CUT`, or for example `POCKET_1.90_TOP` for pockets 1.9 mm deep from above.
     pub name: String,
-    /// The closed lines of the sheet.
+    /// The closed lines of the layer.
     pub loops: Vec<Loop>,
 }
 
@@ -36,7 +36,7 @@ impl Layer {
     }
 }
 
-/// The sheets of a part; none if it cannot be cut.
+/// The sheets of a part; empty if it cannot be cut.
 pub fn sheets(part: &Part) -> Vec<Sheet> {
     let outlines: Vec<_> = part.prisms.iter().map(Outline::of).collect();
     let outer = |outline: &Outline| -> Vec<Loop> {
@@ -65,7 +65,7 @@ pub fn sheets(part: &Part) -> Vec<Sheet> {
     sheets.collect()
 }
 
-/// The lines of a part whose layers have one outer outline.
+/// The layers of a drawing for a part whose layers all have the same outer outline: outline, holes and pockets.
 fn pockets(prisms: &[Prism], outlines: &[Outline], [low, high]: [f64; 2]) -> Vec<Layer> {
     let outer = outlines[0].pieces.iter().filter_map(|piece| piece.first());
     let mut layers = vec![Layer::cut(outer.cloned().collect())];
@@ -103,14 +103,14 @@ fn is_open(outline: &Outline, hole: &Loop) -> bool {
     let sides = hole.sides.iter();
     let sum = sides.fold(Vector::default(), |sum, side| sum + side.from);
     let middle = sum * (1.0 / hole.sides.len() as f64);
-    // The probes lie a little within the line, so that a hole of the same size counts as open.
+    // The probed points lie slightly within the line, so that a hole of the same size counts as open.
     let within = |point: Vector| middle + (point - middle) * 0.999;
     let ends = hole.ends();
     let mut probes = ends.flat_map(|(side, to)| [side.from, side.middle(to)]);
     probes.all(|point| !outline.contains(within(point)))
 }
 
-/// The smallest and the largest x and y of a sheet, arcs at their full size, mm.
+/// The smallest and the largest x and y of a sheet, with the arcs divided finely, mm.
 pub fn extent(sheet: &Sheet) -> [Vector; 2] {
     let lines = sheet.layers.iter().flat_map(|layer| &layer.loops);
     bounds(lines.flat_map(Loop::ends).flat_map(|(side, to)| {

@@ -1,9 +1,9 @@
 //! A part's surface: flat faces and walls that share their edges.
 //!
 //! A stack of layers has walls along the outlines, and flat faces where a layer ends and the next one does not
-//! cover it. The outlines of two layers may coincide along a part of their length, so at each height both are cut
-//! where they meet. Every piece is then one edge, which exactly two faces share. This makes a valid solid in STEP
-//! and a mesh without gaps.
+//! cover it. The outlines of two layers may coincide along a part of their length, so at each height both outlines
+//! are cut where they intersect. Every piece is then one edge, which exactly two faces share. This makes a valid
+//! solid in STEP and a mesh without gaps.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +18,7 @@ use crate::layers::outline::{self, Loop, Outline, SAME_POINT_MM, Side};
 pub struct Solid {
     /// Points seen from above, mm.
     pub points: Vec<Vector>,
-    /// The heights at which layers meet, ascending, mm.
+    /// The heights of the boundaries between layers, ascending, mm.
     pub heights: Vec<f64>,
     /// The lines and arcs between points.
     pub edges: Vec<Edge>,
@@ -28,11 +28,11 @@ pub struct Solid {
     pub volume: f64,
 }
 
-/// An edge between two corners: upright if both are one point at two heights, along a slope if they are two points
-/// at two heights.
+/// An edge between two corners: at one height; upright if both corners are one point at two heights; along a slope
+/// if they are two points at two heights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge {
-    /// Two corners, each as a point and a height.
+    /// The two corners, each by the indices of a point and of a height.
     pub ends: [(usize, usize); 2],
     /// The bulge, as in [`Side`]: 0 if straight.
     pub bulge: f64,
@@ -41,7 +41,7 @@ pub struct Edge {
 /// A face: loops of edges, each edge with its direction, true for forward.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Face {
-    /// The surface that it lies on.
+    /// The surface on which the face lies.
     pub surface: Surface,
     /// The outer loop, counter-clockwise seen from outside the part, then its holes.
     pub loops: Vec<Vec<(usize, bool)>>,
@@ -50,14 +50,14 @@ pub struct Face {
 /// The plane, cylinder or cone under a face.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Surface {
-    /// A plane at a height, seen from above.
+    /// A horizontal plane, by the index of its height, seen from above.
     Top(usize),
-    /// A plane at a height, seen from below.
+    /// A horizontal plane, by the index of its height, seen from below.
     Bottom(usize),
-    /// A wall along a side of an outline, which ends at a point.
+    /// A wall along a side of an outline; the vector is the side's end point.
     Wall(Side, Vector),
-    /// A leaning wall along a side, which ends at a point, from the height of this index; and its arc's radius at
-    /// the next height, mm.
+    /// A leaning wall along a side of an outline: the side, its end point, the index of its lower height, and the
+    /// arc's radius at the next height, mm.
     Slope(Side, Vector, usize, f64),
 }
 
@@ -116,10 +116,12 @@ type Cut<'a> = (&'a Outline, &'a [Vec<Piece>]);
 
 #[derive(Default)]
 struct SolidBuilder {
+    /// Index of the edge by height, two points and the middle of the piece.
     solid: Solid,
     edge_of: BTreeMap<(usize, usize, usize, usize), usize>,
     /// Middles of pieces, which distinguish two arcs between the same points.
     middles: Vec<Vector>,
+    /// Index of the edge from a height to the next one, by lower point, upper point and upper height.
     upright_of: BTreeMap<(usize, usize, usize), usize>,
 }
 
@@ -132,7 +134,7 @@ fn find_or_add(points: &mut Vec<Vector>, point: Vector) -> usize {
 }
 
 impl SolidBuilder {
-    /// Each side of an outline as pieces, cut where it meets another outline.
+    /// Divides each side of an outline into pieces at its intersections with another outline.
     fn pieces(&mut self, level: usize, outline: &Outline, other: &Outline) -> Vec<Vec<Piece>> {
         let others: Vec<_> = other.loops().flat_map(Loop::ends).collect();
         let sides: Vec<_> = outline.loops().flat_map(Loop::ends).collect();
@@ -225,7 +227,7 @@ impl SolidBuilder {
         outline
     }
 
-    /// Adds pieces as faces. Seen from below, each loop runs in the opposite direction.
+    /// Adds faces with these pieces as their edges. Seen from below, each loop runs in the opposite direction.
     fn add_faces(&mut self, mut pieces: Vec<Piece>, surface: Surface, is_below: bool) {
         let mut outer: Vec<(f64, Outline, Vec<Vec<Piece>>)> = Vec::new();
         let mut holes = Vec::new();
@@ -320,7 +322,8 @@ impl SolidBuilder {
         }
     }
 
-    /// The edge from a point at the level below to one at a level: upright, or along a slope.
+    /// Returns the edge from a point at the previous height to a point at this one, upright or along a slope; adds
+    /// the edge if it is new.
     fn upright(&mut self, [low, high]: [usize; 2], level: usize) -> usize {
         let edges = &mut self.solid.edges;
         *self
@@ -336,7 +339,7 @@ impl SolidBuilder {
     }
 }
 
-/// The distance of a point from a side's start along the side: mm, or rad on an arc.
+/// The distance of a point from the start of a side, measured along the side: mm, or rad on an arc.
 pub(crate) fn progress(side: Side, to: Vector, point: Vector) -> f64 {
     let Some((centre, _)) = side.arc(to) else {
         return (point - side.from).length();
@@ -351,7 +354,7 @@ pub(crate) fn progress(side: Side, to: Vector, point: Vector) -> f64 {
     }
 }
 
-/// The bulge of an arc of an angle, rad, that turns in the direction of another bulge; 0 for a line.
+/// The bulge of an arc of `angle`, rad, that turns in the direction of the bulge `like`; 0 if `like` is 0.
 fn bulge_of(angle: f64, like: f64) -> f64 {
     match like == 0.0 {
         true => 0.0,
@@ -359,7 +362,7 @@ fn bulge_of(angle: f64, like: f64) -> f64 {
     }
 }
 
-/// Adds the points in which two sides meet.
+/// Adds the points in which two sides intersect, or between which they overlap.
 fn add_meetings(a: Side, a_end: Vector, b: Side, b_end: Vector, meetings: &mut Vec<Vector>) {
     let end = |position: Vector| PlineVertex::new(position.x, position.y, 0.0);
     let points = match pline_seg_intr(

@@ -132,7 +132,7 @@ impl StepWriter {
         self.add(&format!("LINE('',#{origin},#{vector})"))
     }
 
-    /// A face's surface, and true if the face's outside is where the surface's normal points.
+    /// Adds the surface of a face. The bool is true if the surface's normal points out of the part.
     fn surface(&mut self, solid: &Solid, surface: Surface) -> (usize, bool) {
         match surface {
             Surface::Top(level) | Surface::Bottom(level) => {
@@ -147,7 +147,8 @@ impl StepWriter {
             Surface::Slope(side, end, level, above) => {
                 let (centre, radius) = side.arc(end).expect("a slope is round");
                 let [low, high] = [level, level + 1].map(|level| solid.heights[level]);
-                // The angle of a cone in STEP is positive, so one that narrows upward has a frame that points down.
+                // The angle of a cone in STEP is positive, so a cone that narrows upward gets a frame that points
+                // down.
                 let narrows = radius > above;
                 let up = if narrows { -1.0 } else { 1.0 };
                 let frame = self.frame([centre.x, centre.y, low], [0.0, 0.0, up], [1.0, 0.0, 0.0]);

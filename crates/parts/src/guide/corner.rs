@@ -1,9 +1,9 @@
 //! One corner of the robot, to be printed first: a seat for one servo with the pivots of
 //! its leg, the servo's link, the leg, its strut and its foot.
 //!
-//! After three hours of printing it shows what all parts show after fifteen: whether the
-//! servo fits its opening and the horn its link, whether bearings turn without play, and
-//! how much a foot gives.
+//! After three hours of printing it shows what all parts would show after fifteen: whether
+//! the servo fits its opening and the horn its link, whether bearings turn without play,
+//! and how much a foot yields.
 
 use crate::bodies::assembly::Assembly;
 use crate::bodies::builder::Builder;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-/// Puts the text between each pair of marks into an element.
+/// Replaces each pair of marks by an element around the text between them.
 fn replace_marks(text: &str, mark: &str, element: &str) -> String {
     let mut parts = text.split(mark);
     let mut result = parts.next().unwrap_or_default().to_owned();

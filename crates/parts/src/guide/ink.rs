@@ -8,38 +8,39 @@ use crate::layers::outline::bounds;
 
 /// Margin around the robot, pixels.
 const MARGIN: f64 = 12.0;
-/// Space for names on each side of a picture, and the height of a name, pixels.
+/// Space for labels on each side of a picture, pixels.
 const BESIDE: f64 = 165.0;
+/// Height of a line of a label, pixels.
 const LINE: f64 = 16.0;
 const FONT: &str = "font-family=\"sans-serif\" font-size=\"12\" fill=\"#111\"";
 
-/// Points on the page.
+/// A line through points on the page.
 pub(super) type Trail = Vec<(f64, f64)>;
-/// A label and its place on the page.
+/// A label and the point on the page that it names.
 pub(super) type Name<'a> = ((f64, f64), &'a Label);
 
 /// A name in a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Label {
-    /// The place that it names, chassis frame, mm.
+    /// The point that the label names, chassis frame, mm.
     pub at: Vector,
-    /// Height of that place, mm.
+    /// Height of the named point, mm.
     pub z: f64,
-    /// The name to write.
+    /// The text of the label.
     pub text: String,
-    /// True to write it beside the picture with a line to its place, as names of parts are;
-    /// false to write it on the place.
+    /// True to write the text beside the picture with a line to the named point, as for names of parts; false
+    /// to write it at the point.
     pub beside: bool,
 }
 
-/// The part of the page that is shown, unscaled, mm.
+/// The part of the drawing that is shown, mm, before it is scaled to pixels.
 pub(super) struct Frame {
     low: (f64, f64),
     high: (f64, f64),
 }
 
 impl Frame {
-    /// The frame around some points, with a margin in a close view.
+    /// The smallest frame around some points, with a margin in a close view.
     pub(super) fn around(points: impl Iterator<Item = (f64, f64)>, is_close_up: bool) -> Self {
         /// Margin of a close view, mm.
         const AROUND: f64 = 12.0;
@@ -56,7 +57,7 @@ impl Frame {
     }
 }
 
-/// Shapes in drawing order.
+/// Shapes in the order in which they are drawn.
 #[derive(Default)]
 pub(super) struct Ink {
     /// Colour, loops, and true if the edge is drawn.
@@ -64,14 +65,14 @@ pub(super) struct Ink {
 }
 
 impl Ink {
-    /// Draws loops over everything drawn so far; loops within loops are holes.
+    /// Draws a polygon over everything drawn so far; loops within its outer loop are holes.
     pub(super) fn polygon(&mut self, loops: &[Vec<(f64, f64)>], colour: [f64; 3], has_edge: bool) {
         let [r, g, b] = colour.map(|part| part.clamp(0.0, 255.0).round() as u8);
         self.shapes
             .push((format!("#{r:02x}{g:02x}{b:02x}"), loops.to_vec(), has_edge));
     }
 
-    /// The picture, this many pixels wide, with names at their places on the page.
+    /// The picture as SVG, `width` pixels wide, with labels at their points on the page.
     pub(super) fn finish(self, width: f64, frame: &Frame, names: &[Name]) -> String {
         let (low, high) = (frame.low, frame.high);
         let side = match names.iter().any(|(_, label)| label.beside) {
@@ -156,7 +157,7 @@ impl Ink {
     }
 }
 
-/// Writes a column of names at one side, each with a line to its place.
+/// Writes a column of labels on one side of the picture, each with a line to its point.
 fn write_column(text: &mut String, column: &[Name], is_left: bool, width: f64, height: f64) {
     let count = column.len() as f64;
     let mut min = LINE;
@@ -168,7 +169,7 @@ fn write_column(text: &mut String, column: &[Name], is_left: bool, width: f64, h
             true => (8.0, BESIDE - 4.0, "start"),
             false => (width - 8.0, width - BESIDE + 4.0, "end"),
         };
-        // The line begins about where the words end.
+        // The line begins about where the text ends.
         let words = 6.4 * label.text.chars().count() as f64;
         let from = if is_left { edge + words } else { edge - words };
         let from = if is_left {

@@ -12,8 +12,8 @@ use crate::guide::picture::PictureBody;
 use crate::layers::body::{Body, Kind, Mount};
 use crate::part::Part;
 
-/// A body's name in the guide, such as `M3 x 12` for a screw; for a printed part its noun
-/// and its mark. `None` for a lead, and for a printed body that is in none of `parts`.
+/// A body's name in the guide, such as `M3 x 12` for a screw, or the noun and the mark of a
+/// printed part. `None` for a lead, and for a printed body that is in none of `parts`.
 pub fn display_name(body: &Body, parts: &[Part]) -> Option<String> {
     Some(match body.kind {
         Kind::Screw(length) => format!("M3 x {length}"),
@@ -101,7 +101,7 @@ pub fn places(assembly: &Assembly, pose: &Solution) -> Vec<Label> {
         text: text.to_owned(),
         beside: false,
     };
-    // The label is on the link, beside the shaft, which the board may hide.
+    // The label is on the link and not at the shaft, which the board may hide.
     let on_link = |servo: usize| {
         let out = Vector::new(0.7 * assembly.layout().crank[servo], 0.0);
         assembly.place(Mount::Link(servo), pose).map(out)

@@ -43,15 +43,18 @@ const INTRODUCTION: &str = "No printed robot has walked yet. So print in this or
 Print all parts as they lie, in layers of 0.2 mm, **without supports**. A slicer may offer some under the two ends of a sleeve's \
 roof: that is a bridge of 6.4 mm, which needs none.";
 
-/// Title of the step in which pads are put on their screws, and the text added to it for pads with a strip.
+/// Title of the step in which pads are put on their screws.
 const BENCH: &str = "Legs, on the bench";
+/// Text added to the step of the pads for pads with a strip.
 const STRIP: &str = " Before you press the heads in, glue a strip along each dome, from its notch to the other side. The tips of its hairs or \
 bristles point away from the notch; its front end is folded up and glued into the notch, so that no edge of the floor catches it. \
 Take all four from one piece, since each lifts its foot by its thickness, and cut a hole of 4 mm over the hole for the key.";
-/// Title of the step after which each pad keeps its place, and the texts added to it for a grain or a strip.
+/// Title of the step after which each pad keeps its place.
 const LEVEL: &str = "Level the feet";
+/// Text added to the step that levels the feet, for pads with a grain.
 const GRAIN: &str = " At last turn each pad on its screw until its grain is right: a finger glides smoothly over it \
 from head to tail. docs/gaits.md says more about pads with a grain.";
+/// Text added to the step that levels the feet, for pads with a strip.
 const TO_HEAD: &str =
     " The notches of all four pads, LF, RF, RH and LH, then point straight to the head.";
 
@@ -139,7 +142,7 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
     Ok(files)
 }
 
-/// The guide's text about holes to drill.
+/// The guide's text about holes that have to be drilled.
 fn drilled(parts: &[Part]) -> String {
     let holes = |part: &Part| match part.printed().1 {
         0 => None,
@@ -165,7 +168,7 @@ struct Scene<'a> {
 }
 
 impl Scene<'_> {
-    /// The pictures of the step: the word in the file's name, the caption, and the drawing.
+    /// The pictures of the step: a word for the file's name, the caption, and the drawing.
     fn pictures(&self) -> Vec<(&'static str, &'static str, String)> {
         let view = View {
             width: PICTURE_WIDTH,

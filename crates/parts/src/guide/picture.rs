@@ -1,9 +1,9 @@
 //! A perspective drawing of the robot, or of some of its bodies.
 //!
 //! Everything is a flat layer seen from above, so the drawing order is known without a search. The space is cut at
-//! every height at which something begins or ends, and the slices are drawn from the lowest to the highest. In a
-//! slice, walls are drawn from far to near and then the tops: a wall never rises above its own slice, so it cannot
-//! hide a top of that slice.
+//! every height at which a layer begins or ends, and the slices are drawn from the lowest to the highest. In each
+//! slice, the walls are drawn from far to near and then the tops: a wall never rises above its own slice, so it
+//! cannot hide a top of that slice.
 
 use lizard_kinematics::{Solution, Vector, sin_cos};
 
@@ -18,9 +18,9 @@ use super::ink::{Frame, Ink, Label, Trail};
 pub struct PictureBody<'a> {
     /// The body to draw.
     pub body: &'a Body,
-    /// Lift above its place, mm.
+    /// Lift above the body's place, mm.
     pub lift: f64,
-    /// True to draw it in grey, because the picture is about others.
+    /// True to draw the body in grey, because the picture is about other bodies.
     pub grey: bool,
 }
 
@@ -64,14 +64,15 @@ impl Default for View {
 
 /// Distance of the eye from the robot's middle, mm.
 const EYE_DISTANCE: f64 = 900.0;
-/// Largest angle of a chord, rad.
+/// Largest angle of an arc that a chord spans, rad.
 const CHORD: f64 = 0.55;
 /// Least height of a slice, mm.
 const SLICE: f64 = 0.45;
-/// Radius below which a hole is not drawn, since a screw fills it, mm.
+/// Radius below which a hole is not drawn, since a screw fills it, mm; in a lifted body that is not grey, all holes
+/// are drawn.
 const HOLE: f64 = 1.75;
 
-/// Servos A1 to A4 and what they move: Okabe and Ito's colours and a purple of Tol's.
+/// Colours of servos A1 to A4 and of the bodies that they move: three of Okabe and Ito's, and a purple of Tol's.
 const SERVO: [[f64; 3]; 4] = [
     [0.0, 114.0, 178.0],
     [213.0, 94.0, 0.0],
@@ -79,6 +80,7 @@ const SERVO: [[f64; 3]; 4] = [
     [170.0, 68.0, 153.0],
 ];
 
+/// The viewer's eye, which looks at the robot's middle.
 struct Eye {
     right: Vector,
     away: Vector,
@@ -98,7 +100,7 @@ impl Eye {
         }
     }
 
-    /// Projects a point of space onto the page, mm before the page's scale; y down.
+    /// Projects a point in space onto the page, mm before the page is scaled; y points down.
     fn page(&self, point: Vector, z: f64) -> (f64, f64) {
         let (x, along) = (point.dot(self.right), point.dot(self.away));
         let near = along * self.cos + z * self.sin;
@@ -126,7 +128,7 @@ struct Layer {
     z: [f64; 2],
 }
 
-/// Some bodies at a pose, with names, as SVG.
+/// Draws bodies at a pose, with labels, as SVG.
 pub fn picture(
     assembly: &Assembly,
     drawn: &[PictureBody],
@@ -180,7 +182,7 @@ pub fn picture(
     ink.finish(view.width, &Frame::around(points, view.close_up), &names)
 }
 
-/// A point of a robot that is turned over about its long axis.
+/// A point of the robot after it is turned over about its long axis.
 fn turned_over(point: Vector) -> Vector {
     Vector::new(-point.x, point.y)
 }
@@ -228,7 +230,7 @@ fn layers(assembly: &Assembly, drawn: &[PictureBody], pose: &Solution) -> Vec<La
     layers
 }
 
-/// A loop as points.
+/// The points of a loop, with arcs divided into chords.
 fn points(line: &Loop) -> Vec<Vector> {
     let mut points = Vec::new();
     for (side, to) in line.ends() {
@@ -251,7 +253,7 @@ impl Layer {
         self.z = [-high, -low];
     }
 
-    /// Adds the walls of a loop that the eye sees; neighbours of equal shade become one.
+    /// Adds the walls of a loop that the eye sees; adjacent walls of equal shade become one.
     fn walls(&self, line: &[Vector], eye: &Eye, [low, high]: [f64; 2], walls: &mut Vec<Wall>) {
         let n = line.len();
         let shade = |i: usize| {

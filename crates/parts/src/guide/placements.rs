@@ -21,9 +21,9 @@ use crate::part::Part;
 struct Placed<'a> {
     name: &'a str,
     kind: &'static str,
-    /// The step of the guide in which it is added, from 1.
+    /// The step of the guide in which the body is added, from 1.
     step: usize,
-    /// The stage of that step, from 1.
+    /// The stage of that step in which the body is added, from 1.
     stage: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
     printed: Option<Print>,
@@ -41,11 +41,12 @@ struct Print {
     lift: f64,
     turn: f64,
     at: [f64; 2],
-    /// Holes to be drilled: middle in the chassis frame.
+    /// Middles of the holes to be drilled, chassis frame.
     drill: Vec<[f64; 2]>,
 }
 
-/// A screw: its axis, where its head bears, its length, and where its head is.
+/// A screw: the position of its axis, the height of the face under its head, its length and
+/// diameter, and the side of its head.
 #[derive(Serialize)]
 struct Screw {
     at: [f64; 2],
@@ -53,7 +54,7 @@ struct Screw {
     length: f64,
     diameter: f64,
     head_above: bool,
-    /// The steps in which it is turned again, on the robot.
+    /// The steps in which the screw is turned again, on the robot.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     turned: Vec<usize>,
 }
@@ -73,7 +74,7 @@ struct Flat {
     outline: Vec<[f64; 2]>,
 }
 
-/// The table of placements at a pose.
+/// The placements of all bodies at a pose, as JSON.
 ///
 /// # Panics
 /// Never: texts and numbers can always be written as JSON.

@@ -1,4 +1,4 @@
-//! A rigid body of the robot: its layers, what it is, and what it moves with.
+//! A rigid body of the robot: its layers, its kind, and the mount that it moves with.
 
 use std::borrow::Cow;
 
@@ -16,7 +16,7 @@ use crate::layers::stack::Span;
 pub struct Prism {
     /// Shapes whose union is filled, in the body's frame, mm.
     pub add: Vec<Shape>,
-    /// Holes cut out of that union.
+    /// Holes cut out of the union, in the body's frame, mm.
     pub cut: Vec<Shape>,
     /// Bottom and top, mm above the chassis plate's top.
     pub z: Span,
@@ -50,12 +50,12 @@ impl Prism {
         Self::new(add, [], z)
     }
 
-    /// True if it is more than a rounding error thick.
+    /// True if the layer is thicker than a rounding error.
     pub(crate) fn has_height(&self) -> bool {
         self.z[1] > self.z[0] + 1e-9
     }
 
-    /// The same layer between two other heights.
+    /// The layer between two other heights; its walls keep their slope.
     pub fn at(&self, z: Span) -> Self {
         let [low, high] = self.inset;
         let slope = (high - low) / (self.z[1] - self.z[0]);
@@ -88,7 +88,7 @@ impl Prism {
 /// A body's kind, which decides how it is bought or made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
-    /// A part to print, or to cut where all its layers have one outline.
+    /// A part to print, or to cut if all its layers have one outline.
     Printed,
     /// A servo without its horn.
     Servo,
@@ -155,9 +155,9 @@ pub enum Mount {
     Chassis,
     /// A servo's horn. Origin at the shaft, x along the crank of head or tail.
     Link(usize),
-    /// A leg's driven crank. Origin at its pivot; turned as its servo's link is.
+    /// A leg's driven crank. Origin at its pivot; it turns with its servo's link.
     Crank(usize),
-    /// A leg's follower. Origin at its pivot; turned as its servo's link is.
+    /// A leg's follower. Origin at its pivot; it turns with its servo's link.
     Follower(usize),
     /// A leg's coupler, which carries the foot and never turns. Origin at its joint
     /// with the crank, x towards the follower.
@@ -168,14 +168,14 @@ pub enum Mount {
     /// The coupler of head or tail on the crank of this servo. Origin at the crank's
     /// tip, x along the coupler.
     Coupler(usize),
-    /// The rear half of a slider. Origin at the rear arm's tip, x along the slider.
+    /// The rear half of a slider. Origin at the rear arm's tip, x along the slider from rear to front.
     Sleeve(Side),
-    /// The front half of a slider. Origin at the front arm's tip, x as the rear half's.
+    /// The front half of a slider. Origin at the front arm's tip, x along the slider from rear to front.
     Rod(Side),
 }
 
 impl Mount {
-    /// The servos that its position depends on, in servo order.
+    /// The servos that determine the mount's position, in servo order.
     pub fn servos(self) -> Vec<usize> {
         match self {
             Self::Coupler(servo) => sorted(End::of_servo(servo).servos()),
@@ -184,7 +184,7 @@ impl Mount {
         }
     }
 
-    /// The servo whose link or leg it belongs to; `None` for the chassis and the sliders.
+    /// The servo that the mount is assigned to; `None` for the chassis and the sliders.
     pub fn servo(self) -> Option<usize> {
         match self {
             Self::Link(servo)
@@ -209,17 +209,17 @@ pub struct Body {
     pub name: String,
     /// The body's kind.
     pub kind: Kind,
-    /// The mount that it moves with.
+    /// The mount that the body moves with.
     pub mount: Mount,
     /// The layers from bottom to top, in the mount's frame.
     pub prisms: Vec<Prism>,
-    /// Names of bodies on other mounts that it touches or passes through by design, such
-    /// as the parts that a screw holds. A separate test checks each such pair.
+    /// Names of bodies on other mounts that this body touches or passes through by design, such as the parts that a
+    /// screw holds. A separate test checks each such pair.
     pub meets: Vec<String>,
 }
 
 impl Body {
-    /// The lowest and the highest point, mm.
+    /// The lowest and the highest z of the body, mm.
     pub fn z(&self) -> Span {
         let mut span = [f64::INFINITY, f64::NEG_INFINITY];
         for prism in &self.prisms {
@@ -229,7 +229,7 @@ impl Body {
     }
 }
 
-/// The servo's end, and its index there: 0 left, 1 right.
+/// The end of the robot that a servo drives, and the servo's index at that end: 0 for left, 1 for right.
 pub(crate) fn at_end(servo: usize) -> (End, usize) {
     let end = End::of_servo(servo);
     (end, usize::from(end.servos()[1] == servo))

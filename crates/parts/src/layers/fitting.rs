@@ -1,7 +1,8 @@
 //! The parts that the robot carries besides its mechanism: supply, terminal strips, plugs.
 //!
-//! Shops sell them in many sizes, so the robot reserves a space for each into which common
-//! products fit. Two products are named with their sizes; a test checks that they fit.
+//! Shops sell such parts in many sizes, so the robot reserves a space for each one, into
+//! which common products fit. Two products are named with their sizes; a test checks that
+//! they fit.
 
 use std::fmt;
 
@@ -20,7 +21,7 @@ pub const BATTERIES: [Example; 2] = [
     Example::usual("JJRC H8D 2S 500 mAh", [25.0, 55.0, 12.5]),
 ];
 
-/// A product that fits into a reserved space, or a kind of product where shops name no make.
+/// A product that fits into a reserved space; or a kind of product, if shops name no make.
 #[derive(Clone, Copy, Debug)]
 pub struct Example {
     /// The maker's name or number for the product.
@@ -87,11 +88,11 @@ pub enum Fitting {
 /// The facts about a fitting.
 #[derive(Clone, Copy, Debug)]
 pub struct FittingFacts {
-    /// The name of its body; several of one kind are numbered.
+    /// The name of the fitting's body; the bodies of several equal fittings are numbered.
     pub name: &'static str,
     /// The mass, g, as stated by shops.
     pub grams: f64,
-    /// The space reserved for it: to the right, forward, up, mm.
+    /// The space reserved for the fitting: to the right, forward, up, mm.
     pub size: [f64; 3],
     /// The article to buy, without rating and size.
     pub what: &'static str,
@@ -113,7 +114,7 @@ const fn strips(ways: f64) -> [Example; 2] {
 }
 
 impl Fitting {
-    /// Every kind, roughly in the order of the current's path from the battery.
+    /// Every kind of fitting, roughly in the order of the current's path from the battery.
     pub const ALL: [Self; 14] = [
         Self::Strap,
         Self::Plug,
@@ -131,7 +132,7 @@ impl Fitting {
         Self::Radio,
     ];
 
-    /// Returns the facts about this kind.
+    /// Returns the facts about this kind of fitting.
     pub fn facts(self) -> FittingFacts {
         match self {
             Self::Converter => FittingFacts {
@@ -293,12 +294,12 @@ impl Fitting {
         }
     }
 
-    /// The name of its body.
+    /// The name of the fitting's body.
     pub fn name(self) -> &'static str {
         self.facts().name
     }
 
-    /// The line in the shopping list; empty for a piece of another strip and for an option.
+    /// The row in the shopping list; empty for a piece of another strip and for an option.
     pub fn what(self) -> String {
         let FittingFacts { what, size, .. } = self.facts();
         let [x, y, z] = size;
@@ -319,7 +320,7 @@ impl Fitting {
         }
     }
 
-    /// The price class of its row in the bill of materials.
+    /// The price class of the fitting's row in the bill of materials.
     pub fn price(self) -> Price {
         match self {
             Self::Resistor => Price::A,

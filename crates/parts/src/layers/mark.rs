@@ -10,19 +10,21 @@ use crate::layers::body::Prism;
 use crate::layers::outline::{Loop, Outline, bounds};
 use crate::layers::shape::Shape;
 
-/// Width and height of a digit between the middles of its lines, and the distance from
-/// one digit to the next, mm.
+/// Width and height of a digit between the middles of its lines, mm.
 const DIGIT: [f64; 2] = [1.9, 3.4];
+/// Distance from one digit to the next, mm.
 const NEXT: f64 = 3.5;
-/// Half the width of a line, and its depth: two layers, mm.
+/// Half the width of a line, mm.
 const LINE: f64 = 0.35;
+/// Depth of a line: two printed layers, mm.
 pub const DEEP: f64 = 0.4;
-/// Least width of the face beside a mark, mm.
+/// Least width of the face around a mark, mm.
 const BESIDE: f64 = 0.7;
-/// Distance between the places that are tried, mm.
+/// Distance in x between the positions that are tried for a mark, mm; in y it is half of
+/// this.
 const STEP: f64 = 0.8;
 
-/// The lines of a digit, from and to, in a field of one by one.
+/// The lines of a digit, each by its two end points, in a unit square.
 fn lines(digit: char) -> &'static [[(f64, f64); 2]] {
     const TOP: [(f64, f64); 2] = [(0.0, 1.0), (1.0, 1.0)];
     const MIDDLE: [(f64, f64); 2] = [(0.0, 0.5), (1.0, 0.5)];
@@ -86,7 +88,8 @@ pub fn engraved(prisms: &[Prism], text: &str) -> Option<Vec<Prism>> {
     None
 }
 
-/// Lower left corner of a place in an outline that has room for a mark.
+/// Lower left corner of a position in an outline that has room for a mark; `None` if there
+/// is no room.
 fn place(outline: &Outline, text: &str, free: impl Fn(Vector) -> bool) -> Option<Vector> {
     let ends = outline.loops().flat_map(Loop::ends);
     let [low, high] = bounds(ends.flat_map(|(side, to)| [side.from, side.middle(to)]));

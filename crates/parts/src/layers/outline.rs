@@ -31,7 +31,7 @@ pub(crate) const SAME_POINT_MM: f64 = 1e-5;
 /// counter-clockwise around a part, clockwise around a hole.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loop {
-    /// The sides, each from its own point to the next one's.
+    /// The sides, each from its start point to the start point of the next side.
     pub sides: Vec<Side>,
 }
 
@@ -40,8 +40,8 @@ pub struct Loop {
 pub struct Side {
     /// The start point, mm.
     pub from: Vector,
-    /// The tangent of a quarter of its arc's angle: 0 for a line, 1 for a semicircle,
-    /// positive for a left turn.
+    /// The tangent of a quarter of the arc's angle: 0 for a straight side, 1 for a semicircle, positive for a left
+    /// turn.
     pub bulge: f64,
 }
 
@@ -100,7 +100,7 @@ impl Outline {
         self.loops().map(Loop::area).sum()
     }
 
-    /// The area times its centroid, mm^3.
+    /// The area times its centroid: the first moment of area, mm^3.
     pub fn moment(&self) -> Vector {
         self.loops()
             .fold(Vector::default(), |sum, line| sum + line.moment())
@@ -132,13 +132,13 @@ impl Loop {
         Self { sides }
     }
 
-    /// The sides with their ends.
+    /// The sides, each with its end point.
     pub fn ends(&self) -> impl Iterator<Item = (Side, Vector)> {
         let n = self.sides.len();
         (0..n).map(move |i| (self.sides[i], self.sides[(i + 1) % n].from))
     }
 
-    /// Centre and radius, if it is a circle.
+    /// Centre and radius if the loop is a circle.
     pub fn circle(&self) -> Option<(Vector, f64)> {
         let mut arcs = self.ends().map(|(side, to)| side.arc(to));
         let (centre, radius) = arcs.next()??;
@@ -151,12 +151,12 @@ impl Loop {
         arcs.all(is_same_circle).then_some((centre, radius))
     }
 
-    /// The area within, mm^2; negative around a hole.
+    /// The enclosed area, mm^2; negative around a hole.
     pub fn area(&self) -> f64 {
         self.polyline().area()
     }
 
-    /// The area within times its centroid, mm^3.
+    /// The enclosed area times its centroid, mm^3.
     fn moment(&self) -> Vector {
         let mut sum = Vector::default();
         for (side, to) in self.ends() {
@@ -166,6 +166,8 @@ impl Loop {
             if let Some((centre, radius)) = side.arc(to) {
                 let half = 2.0 * libm::atan(side.bulge.abs());
                 let area = radius * radius * (half - libm::sin(half) * libm::cos(half));
+                // Half the chord's length; with it, the distance of the segment's centroid from the centre is 2 r^3
+                // sin^3 / (3 area).
                 let reach = radius * libm::sin(half);
                 let out = 2.0 / 3.0 * (reach * reach * reach) / area;
                 let chord = (b - a) * (1.0 / (b - a).length());
@@ -198,7 +200,7 @@ impl Side {
         PlineVertex::new(self.from.x, self.from.y, self.bulge)
     }
 
-    /// Centre and radius of its arc to an end; `None` for a line.
+    /// Centre and radius of the side's arc to its end point; `None` for a straight side.
     pub fn arc(&self, to: Vector) -> Option<(Vector, f64)> {
         (self.bulge != 0.0).then(|| {
             let end = PlineVertex::new(to.x, to.y, 0.0);
@@ -207,14 +209,14 @@ impl Side {
         })
     }
 
-    /// The point half-way to an end.
+    /// The midpoint of the side, given its end point.
     pub fn middle(&self, to: Vector) -> Vector {
         let middle = seg_midpoint(self.vertex(), PlineVertex::new(to.x, to.y, 0.0));
         Vector::new(middle.x, middle.y)
     }
 
-    /// Points that divide the arc to an end, without its ends, into as many parts as `count` returns for its radius
-    /// and its angle, rad. A line has none.
+    /// Points that divide the arc to the side's end point into as many parts as `count` returns for its radius and
+    /// its angle, rad. The start and end points are left out; a straight side has no such points.
     pub(crate) fn along(&self, to: Vector, count: impl Fn(f64, f64) -> u32) -> Vec<Vector> {
         let Some((centre, radius)) = self.arc(to) else {
             return Vec::new();
@@ -232,7 +234,7 @@ impl Side {
 
 type Lines = Vec<Polyline<f64>>;
 
-/// The union of outlines: the outer lines, and the gaps that they enclose.
+/// The union of outlines: its outer lines, and the gaps that these enclose.
 fn unite(outlines: impl Iterator<Item = Polyline<f64>>) -> (Lines, Lines) {
     let (mut pieces, mut gaps) = (Lines::new(), Lines::new());
     for outline in outlines {

@@ -7,7 +7,7 @@ use lizard_kinematics::{Real, Vector};
 pub struct Placement<T = f64> {
     /// The frame's origin, mm.
     pub at: Vector<T>,
-    /// The direction of its x axis, length one.
+    /// The direction of the frame's x axis, a unit vector.
     pub turn: Vector<T>,
 }
 
@@ -31,7 +31,7 @@ impl<T: Real> Placement<T> {
         self.at + self.turn * point.x + self.turn.left() * point.y
     }
 
-    /// The same place as seen from another body's frame.
+    /// Converts this placement to another body's frame. Both are given in the chassis frame.
     pub fn seen_from(&self, frame: &Self) -> Self {
         let in_frame = |v: Vector<T>| Vector::new(v.dot(frame.turn), frame.turn.cross(v));
         Self {

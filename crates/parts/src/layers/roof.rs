@@ -13,12 +13,13 @@ use crate::layers::shape::Shape;
 
 /// Height of a printer's layer, mm. A hole is closed by one layer.
 pub const LAYER_MM: f64 = 0.2;
-/// Distance from a hole's edge at which its support is looked for, mm.
+/// Distance from a hole's edge at which the layer below must support it, mm.
 const BESIDE: f64 = 0.3;
-/// Heights that differ by less are the same, mm.
+/// Tolerance within which heights count as equal, mm.
 const SAME_HEIGHT_MM: f64 = 1e-6;
 
-/// The layers with all holes closed that would begin in the air, and the number of these holes.
+/// Closes each hole that would begin in mid-air with one printed layer. Returns the layers and the number of these
+/// holes.
 pub fn closed(prisms: &[Prism]) -> (Vec<Prism>, usize) {
     let mut layers = prisms.to_vec();
     let mut count = 0;
@@ -50,7 +51,7 @@ fn first_layer_top(low: f64) -> f64 {
     LAYER_MM * (first + 1.0)
 }
 
-/// A layer cut in two at a height, if that height is within it.
+/// Cuts a layer in two at a height. Returns the layer alone if the height is outside it or at its bottom or top.
 fn split(layer: &Prism, height: f64) -> Vec<Prism> {
     let [low, high] = layer.z;
     match height < low + SAME_HEIGHT_MM || height > high - SAME_HEIGHT_MM {
@@ -59,7 +60,7 @@ fn split(layer: &Prism, height: f64) -> Vec<Prism> {
     }
 }
 
-/// Centres of the holes that begin in the air.
+/// Returns the centres of the holes that begin in mid-air.
 pub fn in_air(prisms: &[Prism]) -> Vec<Vector> {
     let mut middles = Vec::new();
     for pair in prisms.windows(2) {
@@ -71,7 +72,7 @@ pub fn in_air(prisms: &[Prism]) -> Vec<Vector> {
     middles
 }
 
-/// True if a hole's edge lies in the material and has nothing below it.
+/// True if there is material all around a hole, and none below that material.
 fn begins_in_air(hole: &Shape, prism: &Prism, below: &Outline) -> bool {
     let outline = Outline::of(prism);
     let edge = Shape {
@@ -92,7 +93,7 @@ mod tests {
     fn a_closed_layer_is_one_that_a_slicer_sees() {
         for low in [2.0, 4.1, 1.33, 3.0, 0.85] {
             let high = first_layer_top(low);
-            // Slicers look at 0.1, 0.3, 0.5 mm and so on.
+            // Slicers sample a part at 0.1, 0.3, 0.5 mm and so on.
             let seen = (0..100).map(|i| 0.1 + LAYER_MM * f64::from(i));
             let count = seen.filter(|z| low + 1e-9 < *z && *z < high - 1e-9).count();
             assert_eq!(count, 1, "{low} {high}");

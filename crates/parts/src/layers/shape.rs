@@ -1,8 +1,8 @@
 //! Flat convex shapes with round corners. All parts are made of them.
 //!
 //! A bar is a line that has a width; a hub is a point that has one; a plate is a polygon
-//! whose corners are rounded. All three are the same: the convex hull of a few points,
-//! grown by a radius. The distance of two such shapes is that of two polygons, less both
+//! whose corners are rounded. Each of them is the convex hull of a few points, grown by a
+//! radius. The distance of two such shapes is the distance of two polygons, less both
 //! radii, which suits a collision test. Their outlines are lines and arcs, which suits a
 //! drawing.
 
@@ -90,7 +90,7 @@ impl Shape {
         sum * (1.0 / self.points.len() as f64)
     }
 
-    /// The largest distance of any point of the shape from one point, mm.
+    /// The largest distance of any point of the shape from a given point, mm.
     pub fn farthest(&self, from: Vector) -> f64 {
         let distances = self.points.iter().map(|&point| (point - from).length());
         distances.fold(0.0, f64::max) + self.radius
@@ -140,8 +140,8 @@ impl Shape {
         between - self.radius - other.radius
     }
 
-    /// Depth of this shape within a hole, mm; below 0 if it sticks out. A lower bound if its
-    /// points may be displaced, by up to `strayed` along x and y.
+    /// Depth of this shape within a hole, mm; below 0 if it sticks out. The result is a lower
+    /// bound for every displacement of its points by up to `strayed` along x and y.
     pub fn depth_in(&self, hole: &Self, strayed: Vector) -> f64 {
         let sharp = Self {
             points: hole.points.clone(),
@@ -170,8 +170,8 @@ impl Shape {
         }
     }
 
-    /// The lines along the polygon's sides: a point on each, and its unit normal, which
-    /// points outward. A disc has none.
+    /// The lines along the polygon's sides: a point on each line, and the line's outward unit
+    /// normal. A bar has two, one for each direction; a disc has none.
     fn lines(&self) -> impl Iterator<Item = (Vector, Vector)> {
         let n = self.points.len();
         (0..if n > 1 { n } else { 0 }).map(move |i| {
@@ -190,12 +190,12 @@ impl Shape {
         beyond.fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// True if a point is in the polygon.
+    /// True if a point is in the polygon or on its edge; always false for discs and bars.
     fn contains(&self, point: Vector) -> bool {
         self.points.len() > 2 && self.edges().all(|(a, b)| (b - a).cross(point - a) >= 0.0)
     }
 
-    /// The sides of the polygon; a disc has one of length 0.
+    /// The sides of the polygon; a bar has one, a disc has one of length 0.
     fn edges(&self) -> impl Iterator<Item = (Vector, Vector)> {
         let n = self.points.len();
         let sides = if n == 2 { 1 } else { n };
@@ -272,7 +272,8 @@ mod tests {
         let bore = Shape::rectangle(at(0.0, 0.0), at(50.0, 6.4), 0.0);
         let rod = Shape::rectangle(at(1.0, 0.0), at(40.0, 6.0), 1.0);
         near(rod.depth_in(&bore, still), 0.2);
-        // A shift along the bore takes no air up to its end, a shift across takes it all.
+        // A shift along the bore keeps the clearance until the rod gets close to the bore's end; a shift across
+        // reduces it by the whole shift.
         near(rod.depth_in(&bore, at(3.0, 0.1)), 0.1);
         near(rod.depth_in(&bore, at(3.9, 0.0)), 0.1);
         assert!(bore.depth_in(&rod, still) < 0.0);

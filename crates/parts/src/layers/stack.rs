@@ -8,7 +8,7 @@
 
 use lizard_robot::Parts;
 
-/// Bottom and top, mm above the chassis plate's top.
+/// Heights of a layer's bottom and top, mm above the chassis plate's top.
 pub type Span = [f64; 2];
 
 /// Lengths of screws that every shop has, mm. ISO 7380 and ISO 4017 define more, but few
@@ -24,17 +24,20 @@ pub const PLAY: f64 = 0.2;
 pub const HEX: f64 = 2.0;
 /// Height of the seat under a servo's flange, mm. It lifts the horn above the strut.
 const SEAT: f64 = 2.6;
-/// Height of a leg's bearing on the plate, mm. At 0.2 mm of play in it the foot, six times as far, moves 1.2 mm.
+/// Height of a leg's bearing on the plate, mm. The foot is six times as far away: play of 0.2 mm in the bearing
+/// moves it by 1.2 mm.
 const BEARING: f64 = 8.5;
 /// From the underside of a leg's crank to the tip of its anchor's screw, mm.
 const TIP: f64 = 0.1;
 /// Least thickness above a nut that is sunk into a part, mm.
 const OVER_NUT: f64 = 1.2;
-/// Thickness of the strut's floor under its spring, and the gap between them, mm.
+/// Thickness of a strut's floor under its spring, mm.
 const STRUT: f64 = 1.6;
+/// Gap between a strut's floor and its spring, mm.
 const OVER_FLOOR: f64 = 0.15;
-/// Gap above a spring's hook, and under the head that holds a strut down, mm.
+/// Gap above a spring's hook, mm.
 const OVER_HOOK: f64 = 0.5;
+/// Gap between a strut and the screw head that holds it down, mm.
 const OVER_STRUT: f64 = 0.3;
 /// Thickness of a link under the horn's arm, mm.
 const UNDER_HORN: f64 = 1.8;
@@ -44,8 +47,8 @@ const SLEEVE: f64 = 1.3;
 pub const LEAF: f64 = 1.0;
 /// Height of a pad above the head that snaps into it, mm.
 pub const PAD_LIP: f64 = 0.8;
-/// From a pad to its leaf, mm: the height by which a foot's screw can raise it, and the width
-/// of the hex key, which measures it. The screw can lower a foot by more.
+/// Gap between a pad and its leaf, mm: the height by which a foot's screw can raise the foot,
+/// and the width of the hex key that measures the gap. The screw can lower a foot by more.
 const RAISE: f64 = 2.0;
 /// Thickness above the nut of a foot's screw, mm.
 const OVER_FOOT_NUT: f64 = 1.6;
@@ -59,7 +62,7 @@ pub struct Stack {
     pub pad: Span,
     /// The leaf on which a foot yields; the foot's nut is sunk into it.
     pub leaf: Span,
-    /// The boss around that nut and above it.
+    /// The boss of the leaf, around and above a foot's nut.
     pub boss_of_foot: Span,
     /// The couplers of the legs.
     pub leg_coupler: Span,
@@ -71,7 +74,7 @@ pub struct Stack {
     pub servo: f64,
     /// Cranks and followers of the legs.
     pub crank: Span,
-    /// The bearings of cranks and followers on the plate, which reach higher.
+    /// The bearings of cranks and followers on the plate; they reach higher than the cranks.
     pub bearing: Span,
     /// The anchors on the cranks, which carry the struts.
     pub anchor: Span,
@@ -95,7 +98,7 @@ pub struct Stack {
     pub sunk: Span,
     /// The lower couplers of head and tail.
     pub lower: Span,
-    /// The upper couplers.
+    /// The upper couplers of head and tail.
     pub upper: Span,
     /// The sleeves of the sliders.
     pub sleeve: Span,
@@ -173,14 +176,14 @@ impl Stack {
         }
     }
 
-    /// Top of the pocket for a leg anchor's nut, and the length of its screw, which must not
-    /// touch the plate.
+    /// Top of the pocket for a leg anchor's nut, mm, and the length of the anchor's screw, mm.
+    /// The screw's tip must not touch the plate.
     pub fn anchor_nut(&self, parts: &Parts) -> (f64, f64) {
         let tip = self.crank[0] + TIP;
         (tip + parts.screw.nut_height, self.on_hook - tip)
     }
 
-    /// From the floor to the head of a screw in its pad, mm.
+    /// Height of the head of a pad's screw above the floor, mm.
     pub fn under_head(&self, parts: &Parts) -> f64 {
         self.pad[1] - PAD_LIP - parts.screw.head_height - self.floor
     }
@@ -191,7 +194,7 @@ impl Stack {
     }
 }
 
-/// The shortest screw on sale of at least a length, mm; that length itself if none is.
+/// The shortest screw length on sale of at least `min`, mm; `min` if all screws on sale are shorter.
 pub fn screw_length(min: f64) -> f64 {
     SCREWS
         .into_iter()

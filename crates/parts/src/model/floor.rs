@@ -2,12 +2,12 @@
 
 use lizard_robot::Robot;
 
-/// A floor.
+/// The floor of a simulation: its slope, its blocks and its friction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Floor {
-    /// The blocks that lie on it.
+    /// The blocks that lie on the floor.
     pub blocks: Vec<Block>,
-    /// The angle by which it rises in the robot's forward direction, deg.
+    /// Slope: the angle by which the floor rises in the robot's forward direction, deg.
     pub rises: f64,
     /// The friction coefficient under each pad, in servo order.
     pub friction: [f64; 4],
@@ -16,11 +16,11 @@ pub struct Floor {
 /// A block on the floor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Block {
-    /// The middle, mm to the right of the robot's start position and ahead of it.
+    /// The block's middle, mm to the right of the robot's start position and ahead of it.
     pub at: [f64; 2],
-    /// The size to the right, forward and up, mm, before the block is turned.
+    /// The block's size to the right, forward and up, mm, before the block is turned.
     pub size: [f64; 3],
-    /// The angle by which it is turned about its middle, deg counter-clockwise.
+    /// The angle by which the block is turned about its middle, deg counter-clockwise.
     pub turned: f64,
 }
 

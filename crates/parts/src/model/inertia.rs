@@ -1,7 +1,7 @@
 //! Mass, mass centre and inertia of a body, from the triangles of its surface.
 //!
 //! Each triangle makes a tetrahedron with the origin, whose signed volume and moments
-//! have closed forms; over a closed surface they add up to those of the body.
+//! have closed forms; summed over a closed surface, they are the body's volume and moments.
 
 use crate::files::mesh::Mesh;
 
@@ -10,9 +10,9 @@ use crate::files::mesh::Mesh;
 pub(crate) struct Inertia {
     /// Mass, g.
     pub mass: f64,
-    /// Mass times place, g mm.
+    /// First moments: mass times position, g mm.
     first: [f64; 3],
-    /// Mass times the products of the place's components, g mm^2.
+    /// Second moments: mass times the products of the position's components, g mm^2.
     second: [[f64; 3]; 3],
 }
 
@@ -47,7 +47,7 @@ impl Inertia {
         }
     }
 
-    /// The same body with its density multiplied by a factor.
+    /// The moments of the body after its density is multiplied by a factor.
     pub fn scaled(mut self, factor: f64) -> Self {
         self.mass *= factor;
         self.first = self.first.map(|part| part * factor);
@@ -55,7 +55,7 @@ impl Inertia {
         self
     }
 
-    /// The same body moved by an offset, mm.
+    /// The moments of the body after it is moved by an offset, mm.
     pub fn moved(mut self, by: [f64; 3]) -> Self {
         for i in 0..3 {
             for j in 0..3 {
@@ -96,7 +96,7 @@ impl Inertia {
         [y + z, x + z, x + y, -xy, -xz, -yz]
     }
 
-    /// The same inertia in kg m^2, in the notation of the files.
+    /// Formats [`Self::tensor`] in kg m^2, as the model files write numbers.
     pub fn written_tensor(&self) -> [String; 6] {
         // kg m^2 per g mm^2.
         const MILLI_CUBED: f64 = 1e-9;

@@ -25,8 +25,8 @@ impl LoopJoint {
 }
 
 impl Writer<'_> {
-    /// The name of the joint between a body and its parent: that of the servo that drives it, or one made from the
-    /// body's name. In SDF no joint may have the name of a body.
+    /// The name of the joint between a body and its parent: the name of the servo that drives the joint, or a name
+    /// made from the body's. In SDF no joint may have the name of a body.
     pub(super) fn joint_name(&self, node: Node) -> String {
         match self.motor_on(node) {
             Some(servo) => NAMES[servo].to_owned(),
@@ -53,7 +53,7 @@ impl Writer<'_> {
         Some(range.map(round))
     }
 
-    /// The range of a slider's length, mm from its length at neutral.
+    /// The smallest and largest change of a slider's length from neutral, mm.
     fn stroke(&self, side: Side) -> [f64; 2] {
         let limits = self.assembly.robot().limits();
         let now = self.neutral.side(side).s;

@@ -1,18 +1,18 @@
-//! The parts' colours. Parts of one body and one colour share a mesh.
+//! Materials: the colours of the parts. Parts of one body that have one material share a mesh file.
 
 use crate::layers::body::Kind;
 
-/// The colour that some kinds of parts share.
+/// The colour of some kinds of parts, with a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Material {
-    /// The name of its material.
+    /// The material's name, which is also part of the names of mesh files.
     pub name: &'static str,
     /// Red, green, blue and opacity, 0 to 1.
     pub colour: &'static str,
 }
 
 impl Material {
-    /// All looks.
+    /// All materials.
     pub const ALL: [Self; 7] = [
         Self::new("printed", "0.36 0.62 0.36 1"),
         Self::new("servo", "0.15 0.3 0.65 1"),
@@ -27,7 +27,7 @@ impl Material {
         Self { name, colour }
     }
 
-    /// The look of a kind of parts.
+    /// The material of a kind of parts.
     pub fn of(kind: Kind) -> Self {
         let [printed, servo, horn, board, battery, rubber, metal] = Self::ALL;
         match kind {

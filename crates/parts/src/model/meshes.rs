@@ -1,4 +1,4 @@
-//! Mesh files for URDF and SDF: one for each body and look.
+//! Mesh files for URDF and SDF: one for each body and material.
 
 use crate::files::File;
 use crate::files::mesh::Mesh;
@@ -7,7 +7,7 @@ use crate::model::looks::Material;
 use crate::model::node::Node;
 use crate::model::pieces::Piece;
 
-/// The looks that occur among the parts of a body.
+/// The materials that occur among the parts of a body.
 pub(super) fn looks(pieces: &[Piece], node: Node) -> impl Iterator<Item = Material> {
     let is_present = move |look: &Material| {
         let mut own = pieces.iter().filter(|piece| piece.node == node);
@@ -16,7 +16,7 @@ pub(super) fn looks(pieces: &[Piece], node: Node) -> impl Iterator<Item = Materi
     Material::ALL.into_iter().filter(is_present)
 }
 
-/// The name of the mesh file of those parts of a body that have this look.
+/// The name of the mesh file of those parts of a body that have a given material.
 pub(super) fn file(node: Node, look: Material) -> String {
     format!("{}-{}.stl", node.identifier(), look.name)
 }

@@ -41,7 +41,7 @@ pub use scene::{Course, Pads, Pull, Scene};
 use text::Xml;
 use writer::Writer;
 
-/// The file of a scene for MuJoCo.
+/// Returns a scene as an MJCF file for MuJoCo.
 ///
 /// # Errors
 /// Returns [`Unfit::Surface`] for a part whose layers do not make a body.
@@ -49,8 +49,8 @@ pub fn mjcf(assembly: &Assembly, neutral: &Solution, scene: &Scene) -> Result<St
     Ok(Pieces::of(assembly, scene)?.mjcf(neutral, scene))
 }
 
-/// The shapes and masses of a robot. Several files share them, because they take far longer to compute than the
-/// rest.
+/// The shapes and masses of a robot. Several model files share them, because they take far longer to compute than
+/// the rest of a file.
 pub struct Pieces<'a> {
     assembly: &'a Assembly,
     pieces: Vec<Piece>,
@@ -60,26 +60,28 @@ impl<'a> Pieces<'a> {
     /// Computes the shapes and masses for a scene.
     ///
     /// # Errors
-    /// Fails as [`mjcf`] does.
+    /// Returns [`Unfit::Surface`] for a part whose layers do not make a body.
     pub fn of(assembly: &'a Assembly, scene: &Scene) -> Result<Self, Unfit> {
         let pieces = pieces(assembly, scene)?;
         Ok(Self { assembly, pieces })
     }
 
-    /// The file for MuJoCo of a scene. Its struts and play must equal those of the scene given to [`Pieces::of`].
+    /// Returns a scene as an MJCF file for MuJoCo. Its struts and play must equal those of the scene given to
+    /// [`Pieces::of`].
     #[must_use]
     pub fn mjcf(&self, neutral: &Solution, scene: &Scene) -> String {
         self.write_with(neutral, scene, |writer| writer.write_mjcf())
     }
 
-    /// The robot of such a scene as URDF. Its meshes ([`Pieces::meshes`]) are in `folder`: a path or a URL that
-    /// ends with a slash.
+    /// Returns the robot of a scene as URDF; the scene must fit as in [`Pieces::mjcf`]. The file refers to meshes
+    /// ([`Pieces::meshes`]) in `folder`: a path or a URL that ends with a slash.
     #[must_use]
     pub fn urdf(&self, neutral: &Solution, scene: &Scene, folder: &str) -> String {
         self.write_with(neutral, scene, |writer| writer.write_urdf(folder))
     }
 
-    /// The robot of such a scene as SDF, with meshes as in [`Pieces::urdf`].
+    /// Returns the robot of a scene as SDF; the scene must fit as in [`Pieces::mjcf`], and `folder` is that of
+    /// [`Pieces::urdf`].
     #[must_use]
     pub fn sdf(&self, neutral: &Solution, scene: &Scene, folder: &str) -> String {
         self.write_with(neutral, scene, |writer| writer.write_sdf(folder))

@@ -1,6 +1,6 @@
 //! Rigid bodies of the model: the parent of each, and its motion on the parent.
 //!
-//! They are a tree: each closed loop of the robot is cut at one of its joints (`closed.rs`).
+//! The bodies form a tree: each closed loop of the robot is cut at one of its joints (`closed.rs`).
 
 use lizard_kinematics::Side;
 use lizard_robot::servo::{LEGS, NAMES};
@@ -99,7 +99,7 @@ impl Node {
         }
     }
 
-    /// The node's name, which is also that of its joint.
+    /// The node's name, which is also the name of its joint to the parent.
     pub fn name(self) -> String {
         let of = |what: &str, name: &str| format!("{what} {name}");
         match self {

@@ -29,6 +29,7 @@ pub(super) struct Piece {
     pub inertia: Inertia,
 }
 
+/// Computes the pieces of all parts, with the kind of struts that the scene has.
 pub(super) fn pieces(assembly: &Assembly, scene: &Scene) -> Result<Vec<Piece>, Unfit> {
     let slotted = scene.pull.is_some();
     let is_strut = |body: &&Body| matches!(body.mount, Mount::Strut(_));
@@ -86,7 +87,8 @@ fn spring(assembly: &Assembly, servo: usize) -> Piece {
     }
 }
 
-/// Sorts the layers of a body by the model's body with which they move; mostly there is only one.
+/// Sorts the layers of a body by the rigid body of the model with which they move. Only a foot's layers move with
+/// two of them.
 fn split_by_node(assembly: &Assembly, scene: &Scene, body: &Body) -> Vec<(Node, Vec<Prism>)> {
     let of = |node: Node| vec![(node, body.prisms.clone())];
     match body.mount {
@@ -104,6 +106,7 @@ fn split_by_node(assembly: &Assembly, scene: &Scene, body: &Body) -> Vec<(Node, 
     }
 }
 
+/// The centroid of a layer, mm.
 fn middle(prism: &Prism) -> Vector {
     let outline = Outline::of(prism);
     outline.moment() * (1.0 / outline.area())

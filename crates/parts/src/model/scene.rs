@@ -10,11 +10,11 @@ use crate::bodies::assembly::Assembly;
 pub struct Scene {
     /// The model's name.
     pub name: String,
-    /// Excess length of each foot, mm, servo order.
+    /// Length by which each foot is too long, mm, in servo order.
     pub long: [f64; 4],
     /// Stiffness of a foot's leaf, N/mm.
     pub stiffness: f64,
-    /// Friction of a pad that slides backward, divided by that of one that slides forward.
+    /// Friction of a pad that slides backward, divided by its friction when it slides forward.
     pub ratio: f64,
     /// The spring in the slotted struts; `None` for rigid struts.
     pub pull: Option<Pull>,
@@ -22,8 +22,8 @@ pub struct Scene {
     pub play: f64,
     /// The servos' motors, and the friction of the joints.
     pub motors: Motors,
-    /// Dry friction of each pin, N mm, added to that of `motors`; pins at which loops are closed
-    /// have none.
+    /// Dry friction of each pin, N mm, in addition to the friction in `motors`; pins at which loops
+    /// are closed have no friction.
     pub pins: f64,
     /// The floor under the robot.
     pub floor: Floor,
@@ -68,7 +68,7 @@ impl Scene {
     }
 }
 
-/// A shape of pads.
+/// The shape of the pads under the feet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pads {
     /// Smooth domes of this radius, mm.
@@ -105,9 +105,9 @@ pub struct Course {
     pub count: u32,
 }
 
-/// Time from neutral to the gait's first pose, and time to wait there for the body to come
-/// to rest, s.
+/// Time of the motion from neutral to the gait's first pose, s.
 const APPROACH_S: f64 = 0.4;
+/// Time to wait in the gait's first pose until the body is at rest, s.
 const SETTLE_S: f64 = 0.3;
 
 impl Course {

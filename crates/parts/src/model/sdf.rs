@@ -144,7 +144,8 @@ impl Writer<'_> {
         self.xml.close();
     }
 
-    /// The position at which the spring of a body's joint is relaxed, m, and its stiffness, N/m.
+    /// The position at which the spring of a body's joint is relaxed, m, and the spring's stiffness, N/m; `None` for
+    /// a joint without a spring.
     fn spring(&self, node: Node) -> Option<[f64; 2]> {
         match (node, self.scene.pull) {
             (Node::Pad(_), _) => Some([0.0, self.leaf()[0]]),
@@ -155,7 +156,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Opens the element of a joint.
+    /// Opens the element of a joint and writes its parent and child. The caller closes the element.
     fn write_sdf_connection(&mut self, name: &str, kind: &str, parent: &str, child: &str) {
         self.xml
             .open(format!(r#"joint name="{name}" type="{kind}""#));

@@ -1,11 +1,11 @@
-//! Elements, numbers and names in the notation of the files.
+//! XML elements, numbers and names as the model files write them.
 
 use std::fmt::{Display, Write};
 
 /// Metres per mm, kg per g.
 pub(super) const MILLI: f64 = 1e-3;
 
-/// A position in mm, written in metres.
+/// Formats a position in mm as three numbers in metres.
 pub(super) fn metres(at: [f64; 3]) -> String {
     at.map(|part| round(part * MILLI).to_string()).join(" ")
 }
@@ -15,7 +15,7 @@ pub(super) fn round(value: f64) -> f64 {
     (value * 1e9).round() / 1e9 + 0.0
 }
 
-/// Numbers separated by blanks.
+/// Joins numbers with blanks.
 pub(super) fn joined(numbers: impl IntoIterator<Item = impl ToString>) -> String {
     let numbers: Vec<_> = numbers
         .into_iter()
@@ -24,7 +24,7 @@ pub(super) fn joined(numbers: impl IntoIterator<Item = impl ToString>) -> String
     numbers.join(" ")
 }
 
-/// A name, escaped as the value of an attribute.
+/// Escapes a text for use as the value of an attribute.
 pub(super) fn escaped(value: &str) -> String {
     let value = value.replace('&', "&amp;").replace('<', "&lt;");
     value.replace('"', "&quot;")
@@ -43,7 +43,7 @@ impl Xml {
         let _ = writeln!(self.text, "{:indent$}{text}", "");
     }
 
-    /// Writes the line that begins a document.
+    /// Writes the XML declaration, the first line of a document.
     pub fn declaration(&mut self) {
         self.line(r#"<?xml version="1.0"?>"#);
     }

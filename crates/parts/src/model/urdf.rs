@@ -1,7 +1,7 @@
 //! The robot as URDF, the format of ROS: a tree of links, without a floor.
 //!
-//! URDF cannot close a loop. The legs follow their servos exactly, as parallelograms do, so their joints mimic
-//! those of the servos. Couplers, sleeves and rods are free. At each joint where a loop is cut, a pair of frames
+//! URDF cannot close a loop. The legs follow their servos exactly, as parallelograms do, so the legs' joints mimic
+//! the servos' joints. Couplers, sleeves and rods are free. At each joint where a loop is cut, a pair of frames
 //! marks the two points that must coincide.
 
 use std::f64::consts::FRAC_PI_2;
@@ -79,7 +79,7 @@ impl Writer<'_> {
     fn write_urdf_joint(&mut self, node: Node) {
         let range = self.range(node);
         let kind = match (node.freedom(), range) {
-            // URDF has no springs, so the feet cannot move on theirs.
+            // URDF has no springs, so the feet are fixed to their leaves.
             (Freedom::Free | Freedom::SlidesVertically, _) => "fixed",
             (Freedom::Turns, Some(_)) => "revolute",
             (Freedom::Turns, None) => "continuous",
@@ -127,7 +127,7 @@ impl Writer<'_> {
         self.xml.close();
     }
 
-    /// Opens the element of a joint.
+    /// Opens the element of a joint and writes its parent and child. The caller closes the element.
     fn write_urdf_connection(&mut self, name: &str, kind: &str, parent: &str, child: &str) {
         self.xml
             .open(format!(r#"joint name="{name}" type="{kind}""#));
@@ -157,11 +157,12 @@ impl Writer<'_> {
     }
 }
 
-/// The servo whose angle a joint follows, and the factor (1 or -1).
+/// The servo whose angle a body's joint follows, and the factor (1 or -1); `None` if the joint follows no servo.
 fn mimicked_servo(node: Node) -> Option<(usize, i8)> {
     match node {
         Node::Of(Mount::Crank(servo) | Mount::Follower(servo)) => Some((servo, 1)),
-        // These keep their direction on the chassis, so they turn back on a parent that turns.
+        // Feet and struts keep their direction on the chassis, so on their turning parent they turn by the
+        // opposite angle.
         Node::Of(Mount::Foot(servo) | Mount::Strut(servo)) => Some((servo, -1)),
         _ => None,
     }

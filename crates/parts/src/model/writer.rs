@@ -67,7 +67,7 @@ impl<'a> Writer<'a> {
         self.scene.long.into_iter().fold(0.0, f64::max) - self.assembly.stack().floor
     }
 
-    /// The mass of a body.
+    /// The mass and the inertia of a body.
     pub(super) fn mass(&self, node: Node) -> Inertia {
         let own = self.pieces.iter().filter(|piece| piece.node == node);
         let drawn = own.fold(Inertia::default(), |sum, piece| sum.plus(&piece.inertia));
@@ -94,7 +94,7 @@ impl<'a> Writer<'a> {
         let bill = Bill::of(self.assembly, &[], self.neutral);
         let bodies = self.assembly.bodies().iter();
         let parts: f64 = bodies.map(|body| bill::grams(body, self.assembly)).sum();
-        // For a robot that is lighter than its parts, the chassis keeps half of its mass.
+        // If `[body]` states less mass than the parts have, the chassis keeps at least half of its drawn mass.
         let loose = (body.mass - parts).max(-drawn.mass / 2.0);
         let chassis = drawn.plus(&Inertia::point(loose));
         let [ahead, left] =

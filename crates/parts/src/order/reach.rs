@@ -11,8 +11,8 @@
 //! its own stage, and turned when the nut comes. A pad moves with the screw in it; the key reaches that screw
 //! through the pad's hole.
 //!
-//! The servos are at neutral. If a screw cannot be reached there, the nearest other pose that the guard accepts and
-//! that frees it is searched, and the guide names that pose.
+//! The servos are at neutral. If a screw cannot be reached at neutral, the nearest pose is searched that the guard
+//! accepts and that frees the screw, and the guide names that pose.
 
 use std::fmt;
 
@@ -27,7 +27,7 @@ use crate::order::steps::{Step, TurningPlace};
 pub const KEY: [f64; 2] = [2.0, 30.0];
 /// Radius of the bare hex key for an M3 button head, 2 mm over its flats, in the hole of a pad, mm.
 const HEX_KEY: f64 = 1.2;
-/// Wall of a socket around the nut, and its length beyond it, mm.
+/// Wall thickness of a socket around a nut, and the socket's length beyond the nut, mm.
 pub const SOCKET: [f64; 2] = [1.0, 10.0];
 /// Angles by which one servo is turned in the search for a pose, deg.
 const TURNS: [f64; 12] = [
@@ -91,7 +91,7 @@ struct FreeSpace {
 /// The axis of a screw in the robot.
 struct Axis {
     at: Vector,
-    /// Radius of its head.
+    /// Radius of the screw's head, mm.
     radius: f64,
     length: f64,
     /// Height of the head's outer face, mm.
@@ -101,6 +101,7 @@ struct Axis {
 }
 
 impl Axis {
+    /// The cylinder about the axis that begins at a height and has a length; a negative length goes down.
     fn room(&self, radius: f64, from: f64, length: f64) -> FreeSpace {
         let to = from + length;
         FreeSpace {
@@ -128,6 +129,7 @@ impl Bench<'_> {
         };
         let width = |i: usize| body.prisms[i].add[0].width();
         let last = body.prisms.len().checked_sub(1)?;
+        // A screw's head is its widest layer.
         let head = (0..=last).max_by(|a, b| width(*a).total_cmp(&width(*b)))?;
         let (is_above, prism) = (head == last, &body.prisms[head]);
         let place = self.assembly.place(body.mount, self.pose);
@@ -216,6 +218,7 @@ impl Bench<'_> {
         }
         // A hexagonal head is held by its pocket.
         let turns = !matches!(screw.kind, Kind::HexScrew(_));
+        // The pad of a height screw, if the hex key does not fit through the pad's hole.
         let mut through = None;
         if turns && complete && (is_new || new_nut.is_some() || is_turned_later) {
             let key = |radius| axis.room(radius, axis.end, axis.up * KEY[1]);
@@ -282,10 +285,10 @@ impl Assembly {
     }
 
     /// The poses to which the servos must be turned in some steps so that every screw can be reached; empty if all
-    /// can be reached at neutral.
+    /// screws can be reached at neutral, or if the linkages do not close at neutral.
     ///
     /// # Errors
-    /// Fails for a screw that cannot be reached at any of the poses that are tried.
+    /// Returns a screw that cannot be reached at neutral or at any of the poses that are tried.
     pub fn access_poses(&self, steps: &[Step]) -> Result<Vec<AccessPose>, Blocked> {
         let mut access_poses: Vec<AccessPose> = Vec::new();
         let neutral = self.robot().neutral();

@@ -4,7 +4,8 @@
 //! before it is mounted on the robot. `reach.rs` checks which screws can be reached in which stage.
 //!
 //! A servo does not report its angle. So it is wired and driven to its middle before its link is pressed on, and
-//! its direction is tested before the links are joined: a link that turns the wrong way then moves nothing else.
+//! its direction is tested before the links are joined: until then, a link that turns in the wrong direction moves
+//! nothing else.
 
 use crate::layers::body::{Body, Kind, Mount};
 
@@ -53,7 +54,7 @@ pub struct Stage {
 pub enum TurningPlace {
     /// On the robot, among all bodies added so far.
     Robot,
-    /// On the bench, among the bodies of the same servo that this step has added.
+    /// On the bench, among the bodies of the screw's servos that the current step has added.
     Bench,
 }
 
@@ -74,14 +75,17 @@ pub(crate) fn step_and_stage(steps: &[Step], body: &Body) -> (usize, usize) {
     (0, 0)
 }
 
+/// True if a body's name starts with one of the given texts.
 fn named(body: &Body, starts: &[&str]) -> bool {
     starts.iter().any(|start| body.name.starts_with(start))
 }
 
+/// A stage on the robot, without screws that are turned again.
 fn robot(adds: fn(&Body) -> bool) -> Stage {
     stage(TurningPlace::Robot, adds)
 }
 
+/// A stage on the bench, without screws that are turned again.
 fn bench(adds: fn(&Body) -> bool) -> Stage {
     stage(TurningPlace::Bench, adds)
 }
@@ -239,7 +243,7 @@ fn legs() -> Step {
     )
 }
 
-/// A pad or the screw in it, which sets its foot's height.
+/// True for a pad and for the screw in it, which sets the height of its foot.
 fn is_height(body: &Body) -> bool {
     body.kind == Kind::Pad || named(body, &["screw height"])
 }

@@ -23,7 +23,7 @@ pub struct Clearance {
     pub second: String,
     /// Servo angles at the least distance, deg, servo order.
     pub pose: [f64; 4],
-    /// The distance, mm; negative if they overlap.
+    /// The distance between the bodies, mm; negative if they overlap.
     pub mm: f64,
 }
 

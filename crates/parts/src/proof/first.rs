@@ -3,7 +3,7 @@
 //! In a robot that does not fit, hundreds of pairs of parts may collide, and bounding the distance of each takes
 //! minutes. But one pose at which two parts collide is enough to refuse the robot. So the parts are first checked
 //! at poses where collisions are likely: at neutral, on a coarse grid, and at the limits of the guard in every
-//! direction from neutral. If some pairs are too near there, only the worst are bounded.
+//! direction from neutral. If some pairs are too near at these poses, the proof bounds only the worst of them.
 
 use lizard_kinematics::Solution;
 use lizard_robot::Robot;
@@ -18,7 +18,8 @@ const HALVINGS: usize = 12;
 /// The number of colliding pairs whose distance is bounded.
 const WORST: usize = 3;
 
-/// The tasks whose parts come nearest, of those whose parts come too near; `None` if none do at any of the poses.
+/// Returns the [`WORST`] tasks whose parts come nearest, out of those whose parts come too near at one of the checked
+/// poses; `None` if no parts come too near.
 pub fn worst(assembly: &Assembly, tasks: &[Task]) -> Option<Vec<Task>> {
     let robot = assembly.robot();
     let mut poses: Vec<Solution> = robot.accepted(robot.neutral().into()).into_iter().collect();
@@ -47,7 +48,7 @@ fn distance(assembly: &Assembly, task: &Task, pose: &Solution) -> f64 {
 }
 
 /// The last pose that the guard accepts on the line from neutral in one of 81 directions: each servo turns toward
-/// one end of its travel, toward the other, or not at all.
+/// one limit of its travel, toward the other, or not at all. `None` if the guard refuses neutral.
 fn last_accepted_pose(robot: &Robot, direction: u32) -> Option<Solution> {
     let from: [f64; 4] = robot.neutral().into();
     let ends = [0, 1, 2, 3].map(|servo| {

@@ -1,8 +1,8 @@
 //! The poses that the guard accepts, as bounds on the servos' angles.
 //!
 //! [`Limits`] defines a safe pose; this module only applies it. The firmware decides in integers, so it may decide
-//! otherwise within a band around each limit ([`SINE`], [`LENGTH`]). The limits are relaxed by more than that band,
-//! so the proof also covers every pose that the firmware accepts.
+//! otherwise within a band around each limit. The limits are relaxed by more than that band ([`SINE_RELAXATION`],
+//! [`LENGTH_RELAXATION_MM`]), so the proof also covers every pose that the firmware accepts.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -20,11 +20,11 @@ const SINE_RELAXATION: f64 = 0.005;
 const TYPE2: f64 = 0.3;
 /// Relaxation of a slider's stroke and of crossed crank tips, mm.
 const LENGTH_RELAXATION_MM: f64 = 0.1;
-/// Resolution of the ends of a servo's range in [`Guard::end_of`], deg.
+/// Resolution of the bounds of a servo's range in [`Guard::range_end`], deg.
 const FINE: f64 = 0.01;
-/// Resolution of the other servo's angle there, deg.
+/// Resolution of the angle of a pair's other servo in [`Guard::range_end`], deg.
 const COARSE: f64 = 0.2;
-/// Number of regions searched for a pose with some angles given.
+/// Largest number of regions that [`Guard::find_pose`] searches.
 const ATTEMPTS: u32 = 300;
 
 /// A key that orders numbers as [`f64::total_cmp`] does.
@@ -122,12 +122,13 @@ impl<'a> Guard<'a> {
         guard
     }
 
-    /// The angle of one servo of a pair beyond which no pose is accepted, at any angle of the other servo.
+    /// The upper or lower bound of the angle of one servo of a pair: beyond it, no pose is accepted at any angle of
+    /// the other servo.
     fn range_end(&self, pair: [usize; 2], index: usize, is_high: bool) -> f64 {
         let sign = if is_high { -1.0 } else { 1.0 };
         let end = |region: &Region<2>| region.middle[index] - sign * region.half[index];
         let whole = Region::of(pair.map(|servo| self.ranges[servo]));
-        // The region with the least end comes first; among equal ones, the one that was found first.
+        // The outermost region comes first; of regions that reach equally far, the one that was found first.
         let (mut regions, mut count) = (BTreeMap::from([((0, 0), whole)]), 0);
         while let Some((_, region)) = regions.pop_first() {
             if self.refuses(&pair, &region) {
@@ -194,7 +195,7 @@ impl<'a> Guard<'a> {
 
     /// The relaxed limit that a value breaks, if any.
     fn broken_limit(&self, check: Check, value: f64) -> Option<f64> {
-        // The limit of crossed tips is 0 and no field of `Limits`, so the value is shifted instead.
+        // The limit of crossed tips is 0 and not a field of `Limits`, so the value is shifted instead of the limit.
         let slack = match check {
             Check::UncrossedHead | Check::UncrossedTail => LENGTH_RELAXATION_MM,
             _ => 0.0,
@@ -238,8 +239,9 @@ impl<'a> Guard<'a> {
 mod tests {
     use super::*;
 
-    /// Largest error of the firmware's integers, as a sine and in mm: docs/firmware.md.
+    /// Largest error of the firmware's integer arithmetic, as a sine (docs/firmware.md).
     const BAND: f64 = 0.002;
+    /// Largest error of the firmware's integer arithmetic, mm (docs/firmware.md).
     const STEPS: f64 = 4.0 / 256.0;
 
     /// A robot of `robots/`. "At its type-2 limit": the paper's robot with all limits except the type-2 one lifted.
@@ -273,7 +275,8 @@ mod tests {
         }
     }
 
-    /// Each limit is tried by itself, because some, such as that of crossed tips, are never the first to be broken.
+    /// Each limit is tested alone, because a pose that approaches some limits, such as that of crossed tips, always
+    /// breaks another limit first.
     #[test]
     fn every_limit_is_relaxed_by_more_than_the_firmware_may_be_off() {
         for name in ["paper", "large", "unequal", "paper at its type-2 limit"] {

@@ -1,6 +1,6 @@
 //! Interval arithmetic: numbers that are known to lie between two bounds.
 //!
-//! Every result is rounded outward by one step, so the bounds also hold for the exact result. Existing crates
+//! Every result is rounded outward to the next f64, so the bounds also hold for the exact result. Existing crates
 //! require compiling for the newest processors (inari, for its rounding modes) or have no sines, and both would
 //! need a wrapper to implement [`Real`].
 
@@ -8,7 +8,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use lizard_kinematics::{Real, sin_cos};
 
-/// An upper bound of the error of a computed sine, which is 1.5 units in the last place.
+/// An upper bound of the error of a computed sine or cosine, which is at most 1.5 units in the last place.
 const SINE_ERROR: f64 = 1e-15;
 
 /// All numbers from `low` to `high`.
@@ -50,8 +50,9 @@ impl Interval {
         Self::new(low.next_down(), high.next_up())
     }
 
+    /// Returns the sines and the cosines of all angles in the interval, deg.
     fn sine_and_cosine(self) -> (Self, Self) {
-        // True if the interval, slightly widened, contains an angle at which the sine or cosine has an extreme.
+        // True if the interval, slightly widened, contains this angle or one that differs by full turns.
         let passes = |angle: f64| {
             let turns = ((self.low - angle) / 360.0 - 1e-9).ceil();
             turns * 360.0 + angle <= self.high + 1e-6
@@ -68,7 +69,7 @@ impl Interval {
     }
 }
 
-/// Implements operators, each as `operator method(self, other: type) result;`.
+/// Implements operators, each written as `Operator method(self, other: Type) { result }`.
 macro_rules! operators {
     ($($operator:ident $method:ident($self:ident, $other:ident: $type:ty) $result:block)*) => {$(
         impl $operator<$type> for Interval {

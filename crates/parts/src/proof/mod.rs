@@ -1,11 +1,11 @@
-//! Proof that no two parts meet at any pose that the guard accepts.
+//! Proof that no two parts collide at any pose that the guard accepts.
 //!
 //! Poses are not sampled. The space of the servos' angles is divided into regions. For each
 //! region the proof shows either that the guard accepts no pose in it, or that the parts stay
-//! apart in all of it: their distance is measured at the region's centre, and from there no
+//! apart in all of it: their distance is measured at the region's centre, and in the region no
 //! point moves by more than its largest rate times the region's half width. The rates come from
 //! the closed forms of the mechanism in interval arithmetic (`interval.rs`, `slope.rs`), which
-//! is valid for a coupler near a singularity, too. A region that is too large to prove either
+//! is valid for a coupler near a singularity, too. A region that is too large for either proof
 //! is halved (`search.rs`).
 //!
 //! The relative position of two parts depends only on the servos of their mounts
@@ -35,12 +35,12 @@ pub use search::FAR_MM;
 use search::Found;
 use shape_pairs::Task;
 
-/// Least allowed distance of parts that are not made to meet, mm: more than a printer's error.
+/// Least allowed distance of parts that are not designed to touch, mm: more than a printer's error.
 pub const MIN_GAP_MM: f64 = 0.2;
-/// Overlap of parts made to meet that still counts as touching, mm.
+/// Overlap that still counts as touching, for parts that are designed to touch, mm.
 const TOUCH: f64 = 0.02;
 
-/// Number of angles per servo in the grid of poses at which the joints are checked.
+/// Number of angles per servo in the grid of poses that shows which pairs are pinned to each other.
 const JOINT_STEPS: u32 = 6;
 
 /// Two bodies and their least distance.
@@ -52,22 +52,22 @@ pub struct NearestPair {
     pub second: String,
     /// Lower bound of their distance over all accepted poses, mm; below 0 they may overlap.
     pub proved: f64,
-    /// An accepted pose with nearly that distance; `None` if they come no nearer than
-    /// [`ENOUGH`], or if none is found.
+    /// An accepted pose with nearly the distance `proved`; `None` if the bodies come no nearer
+    /// than [`FAR_MM`], or if no such pose is found.
     pub seen: Option<Clearance>,
     /// Servo angles, deg, near which no larger distance could be proved; `None` if `proved` is
-    /// close to the distance seen. They are near the guard's limits, or just beyond.
+    /// close to the distance in `seen`. The angles are near the guard's limits, or just beyond.
     pub doubt: Option<[f64; 4]>,
 }
 
 /// A proof that a robot's parts keep clear of each other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Proof {
-    /// The nearest two bodies of each pair of mounts, without those that are made to meet;
-    /// the nearest first.
+    /// The nearest two bodies of each pair of mounts, without bodies that are designed to touch;
+    /// the nearest pair first.
     pub apart: Vec<NearestPair>,
-    /// The same for bodies that are made to meet, such as a pin and its hole; here the
-    /// distance is the gap between them.
+    /// The nearest two bodies of each pair of mounts among bodies that are designed to touch,
+    /// such as a pin and its hole. Their distance is the gap between them.
     pub meeting: Vec<NearestPair>,
     /// Bounds of each servo's angle over all accepted poses, deg.
     pub ranges: [[f64; 2]; 4],
@@ -107,7 +107,7 @@ impl fmt::Display for NearestPair {
 }
 
 impl NearestPair {
-    /// The clash if the bodies come, or may come, closer than `min`, mm; `None` otherwise.
+    /// The clash of the bodies if they come, or may come, closer than `min`, mm; `None` otherwise.
     fn clash(&self, min: f64) -> Option<Clash> {
         match &self.seen {
             Some(seen) if seen.mm < min.min(0.0) => Some(Clash::Overlap(Box::new(seen.clone()))),
@@ -117,14 +117,14 @@ impl NearestPair {
         }
     }
 
-    /// The least distance seen, mm; the proved bound if none was seen.
+    /// The least distance in `seen`, mm; the proved bound if `seen` is `None`.
     fn mm(&self) -> f64 {
         self.seen.as_ref().map_or(self.proved, |seen| seen.mm)
     }
 }
 
 impl Proof {
-    /// The nearest two bodies that are not made to meet.
+    /// The nearest two bodies that are not designed to touch; `None` if no such pair was checked.
     pub fn least(&self) -> Option<&NearestPair> {
         self.apart.first()
     }
@@ -149,14 +149,13 @@ impl Proof {
     }
 }
 
-/// The questions of a proof: for each pair of mounts, the least distance of their bodies. They
-/// are independent, so each can be answered on another machine.
+/// The questions of a proof: the least distance of the bodies, for each pair of mounts. The
+/// questions are independent, so each can be answered on another machine.
 pub struct Questions<'a> {
     assembly: &'a Assembly,
     guard: Guard<'a>,
     tasks: Vec<Task>,
-    /// True if the quick check found parts that meet. Then `tasks` holds only those with the
-    /// largest overlaps.
+    /// True if the quick check found parts that come too near. Then `tasks` holds only the worst.
     seen: bool,
     joints: Vec<Solution>,
 }
@@ -164,9 +163,10 @@ pub struct Questions<'a> {
 /// The answer to one question.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Answer {
-    /// The smallest gap of a pinned pair.
+    /// The pinned pair with the smallest gap; `None` if no pair is pinned.
     pinned: Option<NearestPair>,
-    /// The nearest of the other pairs, and the number of regions of poses checked.
+    /// The nearest of the pairs that are not pinned, and the number of regions of poses checked; `None` if all
+    /// pairs are pinned.
     nearest: Option<(NearestPair, u64)>,
 }
 
@@ -212,8 +212,9 @@ impl<'a> Questions<'a> {
 
     /// Answers all questions and makes the proof. `known` returns an answer that
     /// [`Questions::one`] has already given for an index. The proof ends at the first parts that
-    /// do not fit, unless the quick check has found some: then each of its worst pairs is bounded.
-    /// After parts that may not fit, the rest is answered with fewer regions and without `known`.
+    /// do not fit, unless the quick check has found such parts: then each of its worst pairs is
+    /// bounded. After parts that may not fit, the remaining questions are answered with fewer
+    /// regions and without `known`.
     pub fn answer(
         &self,
         mut known: impl FnMut(usize) -> Option<Answer>,
@@ -262,10 +263,10 @@ impl<'a> Questions<'a> {
 
 impl Assembly {
     /// Bounds the distance of any two parts over all poses that the guard accepts;
-    /// [`Proof::judge`] then decides whether they fit. If parts meet at one of the poses of
-    /// the quick check, only the worst of them are bounded; otherwise the proof ends at the
-    /// first parts that do not fit. `progress` is called with the number of questions
-    /// answered and their total.
+    /// [`Proof::judge`] then decides whether the parts fit. If some parts come too near at one
+    /// of the poses of the quick check, only the worst of them are bounded; otherwise the proof
+    /// ends at the first parts that do not fit. `progress` is called with the number of
+    /// questions answered and their total.
     pub fn prove(&self, progress: impl FnMut(usize, usize)) -> Proof {
         self.prove_some(|_, _| true, progress)
     }
@@ -279,8 +280,9 @@ impl Assembly {
         Questions::new(self, which).answer(|_| None, progress)
     }
 
-    /// Removes the pinned pairs from a task and returns the one with the smallest gap. A pin and
-    /// its round hole have the same centre at every pose, so their gap never changes.
+    /// Removes the pinned pairs from a task and returns the pair with the smallest gap; `None` if
+    /// no pair is pinned, or if there are no poses. A pin and its round hole have the same centre
+    /// at every pose, so their gap never changes.
     fn take_joint(&self, task: &mut Task, poses: &[Solution]) -> Option<NearestPair> {
         let place = |pose| {
             let [a, b] = task.mounts.map(|mount| self.place(mount, pose));
@@ -307,6 +309,7 @@ impl Assembly {
         min
     }
 
+    /// Converts a search result to body names and angles. Angles on which it does not depend are neutral.
     fn nearest_pair(&self, found: Found) -> NearestPair {
         let [first, second] = found.bodies.map(|body| self.bodies()[body].name.clone());
         let neutral = self.robot().servos().each_ref().map(|servo| servo.neutral);

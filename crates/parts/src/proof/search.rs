@@ -2,8 +2,8 @@
 //!
 //! The region is halved again and again, always in the part where the distance may be least. In each part, the
 //! distance at the middle less the largest motion of all points from there is a lower bound of every distance in
-//! the part. The distance at any accepted pose is an upper bound of the least distance. When both bounds meet, the
-//! least distance is known.
+//! the part. The distance at any accepted pose is an upper bound of the least distance. The search ends when the two
+//! bounds are close.
 
 use std::collections::BTreeMap;
 
@@ -19,10 +19,11 @@ use crate::layers::placement::Placement;
 pub const FAR_MM: f64 = 2.0;
 /// A bound of the rounding error of a distance, mm.
 const ROUNDING: f64 = 1e-6;
-/// Difference between lower and upper bound at which the search ends: in mm, and as a share of the distance.
+/// Absolute part of the difference between lower and upper bound at which the search ends, mm.
 const TOLERANCE: f64 = 0.01;
+/// Relative part of the difference at which the search ends, as a share of the distance.
 const SHARE: f64 = 0.05;
-/// The share for parts designed to touch, for which only the sign of the gap matters.
+/// Relative part of the difference for parts designed to touch, for which only the sign of the gap matters.
 const TOUCHING_SHARE_TOLERANCE: f64 = 0.5;
 /// Half width below which regions are not halved, deg.
 const MIN_HALF_WIDTH: f64 = 0.002;
@@ -34,11 +35,12 @@ const MAX_REGIONS_OVERLAPPING: u64 = 1_000;
 /// The result of a search for the least distance.
 #[derive(Clone, Debug)]
 pub struct Found {
-    /// Lower bound of the distance, mm; never more than [`ENOUGH`].
+    /// Lower bound of the distance, mm; never more than [`FAR_MM`].
     pub proved: f64,
-    /// The two nearest bodies.
+    /// The two nearest bodies, by their index in [`Assembly::bodies`].
     pub bodies: [usize; 2],
-    /// The accepted pose with the least distance found, and that distance, mm.
+    /// The accepted pose with the least distance found, and that distance, mm; `None` if no pose with a distance
+    /// below [`FAR_MM`] is found.
     pub seen: Option<(Solution, f64)>,
     /// Angles of some servos, deg, at the middle of the region that limits the bound; only if the bound is less
     /// than the distance in `seen`.
@@ -52,7 +54,7 @@ struct Part<const N: usize> {
     region: Region<N>,
     /// Lower bound of all distances in the region, mm.
     lower_bound: f64,
-    /// The index of the pair of shapes with that bound.
+    /// The index of the pair of shapes with the bound `lower_bound`.
     by: u32,
     /// The servo across whose angle the region is to be halved.
     across: usize,
@@ -95,8 +97,9 @@ struct Search<'a, const N: usize> {
     guard: &'a Guard<'a>,
     task: &'a Task,
     servos: [usize; N],
-    /// The accepted pose with the least distance found, and that distance. `by` is the index of the pair of shapes.
+    /// The accepted pose with the least distance found, and that distance, mm.
     seen: Option<(Solution, f64)>,
+    /// The index of the pair of shapes with the distance in `seen`.
     by: u32,
     regions: u64,
 }
@@ -115,7 +118,8 @@ impl<const N: usize> Search<'_, N> {
         } else {
             SHARE
         };
-        // The part with the least bound comes first. Regions break ties, so the order is always the same.
+        // The part with the least bound comes first. Parts of equal bounds are ordered by their regions, so the order
+        // is always the same.
         let key = |part: &Part<N>| (ordered(part.lower_bound), part.region.middle.map(ordered));
         let first = self.bound_region(all_poses, &all).into_iter();
         let mut parts: BTreeMap<_, _> = first.map(|part| (key(&part), part)).collect();
@@ -162,8 +166,8 @@ impl<const N: usize> Search<'_, N> {
         angles
     }
 
-    /// Bounds a region's distances. Returns `None` if no pair can be nearer than the least distance found so far,
-    /// or if the guard accepts no pose.
+    /// Bounds a region's distances. Returns `None` if no pair of shapes can be nearer than the least distance found
+    /// so far, or if the guard accepts no pose of the region.
     fn bound_region(&mut self, region: Region<N>, alive: &[u32]) -> Option<Part<N>> {
         self.regions += 1;
         let (bounds, middle) = self.guard.cranks(&self.servos, &region)?;
@@ -220,7 +224,8 @@ impl<const N: usize> Search<'_, N> {
     }
 }
 
-/// Tightens the bounds of a placement by its value at the middle and its largest change from there.
+/// Tightens the bounds of a placement in a region by its value at the region's middle and its largest change from
+/// that value.
 fn tighten<const N: usize>(
     bounds: &Placement<Slope<N>>,
     middle: &Placement,
@@ -236,7 +241,7 @@ fn tighten<const N: usize>(
     }
 }
 
-/// The servo on which a placement depends most.
+/// The index of the servo whose range in a region changes a placement most.
 fn across<const N: usize>(bounds: &Placement<Slope<N>>, region: &Region<N>) -> usize {
     /// The lever arm by which a rotation is converted into a distance, mm.
     const LEVER_MM: f64 = 30.0;

@@ -41,7 +41,7 @@ pub struct ShapePair {
 #[derive(Clone, Debug)]
 pub struct Task {
     pub mounts: [Mount; 2],
-    /// True if these are pairs that are designed to touch.
+    /// True if the pairs are designed to touch.
     pub may_touch: bool,
     pub shape_pairs: Vec<ShapePair>,
 }
@@ -64,8 +64,8 @@ impl Task {
         all
     }
 
-    /// The tasks of a robot: all pairs of bodies that are less than `within` mm apart both in height and by the
-    /// rectangles that they never leave.
+    /// The tasks of a robot: all pairs of bodies whose heights, and whose rectangles that they never leave, are less
+    /// than `within` mm apart. Bodies that are designed to touch are paired only if their heights overlap.
     pub fn all(
         assembly: &Assembly,
         guard: &Guard,
@@ -103,6 +103,7 @@ impl Task {
     }
 }
 
+/// The pairs of shapes of two bodies whose heights are less than `within` mm apart.
 fn shape_pairs(i: usize, a: &Body, j: usize, b: &Body, within: f64) -> Vec<ShapePair> {
     let mut shape_pairs = Vec::new();
     for p in &a.prisms {
@@ -145,8 +146,9 @@ fn holes(prism: &Prism, shape: &Shape) -> Vec<Shape> {
 }
 
 impl ShapePair {
-    /// True if the two are certainly at least `by` mm apart while the second's frame moves by up to `moves` mm and
-    /// the ends of its axes by up to `turns`. It is a quick test: false does not mean that they are near.
+    /// True if the shapes are certainly at least `by` mm apart while the second shape's frame moves by up to `moves`
+    /// mm and the tips of its unit axes by up to `turns`. It is a quick test: false does not mean that the shapes are
+    /// near.
     pub fn is_far(&self, place: &Placement, [moves, turns]: [f64; 2], by: f64) -> bool {
         let [(a, reach), (b, other)] = self.discs;
         let between = (place.map(b) - a).length() - reach - other;
@@ -155,9 +157,9 @@ impl ShapePair {
     }
 
     /// The gap of a pinned pair, mm, which is constant: a pin in the centre of a round hole, or a disc whose centre
-    /// is fixed in the other's frame, in all of `places`. `None` if the pair is not pinned.
+    /// is fixed in the other shape's frame, in all of `places`. `None` if the pair is not pinned.
     pub fn pinned(&self, places: &[Placement]) -> Option<f64> {
-        /// A bound of the rounding error of a joint's place, mm.
+        /// A bound of the rounding error of a joint's position, mm.
         const ROUNDING_MM: f64 = 1e-6;
         let centre = |shape: &Shape| match shape.points[..] {
             [centre] => Some(centre),
@@ -205,13 +207,14 @@ impl ShapePair {
         }
     }
 
-    /// The distance of the two, mm, with the second's frame placed in the first's; negative if they overlap.
+    /// The distance of the two shapes, mm, negative if they overlap; `place` is the second shape's frame in the first
+    /// shape's frame.
     pub fn distance(&self, place: &Placement) -> f64 {
         self.lower_bound(place, |_| Vector::default())
     }
 
-    /// Lower bound of their distance in a region, from their placement at its middle and the largest motion of each
-    /// point from there.
+    /// Lower bound of the shapes' distance in a region, mm, from their relative placement at the region's middle and
+    /// the largest motion of each point in the region.
     pub fn distance_bound<const N: usize>(
         &self,
         place: &Placement,
@@ -234,6 +237,8 @@ impl ShapePair {
         })
     }
 
+    /// Lower bound of the shapes' distance, mm, while each point of the second shape moves along x and y by up to
+    /// `largest_change`.
     fn lower_bound(&self, place: &Placement, largest_change: impl Fn(&Shape) -> Vector) -> f64 {
         let second = self.second.placed(place);
         let moves = largest_change(&self.second);

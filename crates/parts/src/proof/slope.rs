@@ -13,9 +13,9 @@ use super::interval::Interval;
 /// Bounds of a number and of its derivatives while `N` servos turn within given ranges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slope<const N: usize> {
-    /// Bounds of its value.
+    /// Bounds of the number.
     pub value: Interval,
-    /// Bounds of its derivatives with respect to the servos' angles, per degree.
+    /// Bounds of the number's derivatives with respect to the servos' angles, per degree.
     pub slope: [Interval; N],
 }
 
@@ -27,14 +27,16 @@ impl<const N: usize> Slope<N> {
         angle
     }
 
-    /// Largest change from its value at the middle angles, if each servo may be up to `half` degrees from there.
+    /// Largest change of the number from its value at the middle angles, if each servo is at most `half` degrees away
+    /// from its middle angle.
     pub fn largest_change(&self, half: &[f64; N]) -> f64 {
         let slopes = self.slope.iter().zip(half);
         slopes.fold(0.0, |sum, (slope, half)| sum + slope.max_abs() * half)
     }
 
-    /// Tightens the bounds of the number by its value at the middle and its largest change from there. Bounds from
-    /// interval arithmetic are often much wider, because each operation treats its operands as independent.
+    /// Tightens the bounds of the number by its value at the middle angles and its largest change from that value.
+    /// Bounds from interval arithmetic are often much wider, because each operation treats its operands as
+    /// independent.
     pub fn tighten(self, middle: f64, half: &[f64; N]) -> Self {
         /// A bound of the rounding error of `middle`.
         const ROUNDING: f64 = 1e-9;
@@ -49,6 +51,7 @@ impl<const N: usize> Slope<N> {
         }
     }
 
+    /// A function of one number: its value, and its derivatives by the chain rule.
     fn each(self, value: Interval, derivative: impl Fn(Interval) -> Interval) -> Self {
         Self {
             value,
@@ -56,6 +59,7 @@ impl<const N: usize> Slope<N> {
         }
     }
 
+    /// A function of two numbers: its value, and its derivatives by the chain rule.
     fn zip(
         self,
         other: Self,
@@ -135,7 +139,7 @@ mod tests {
 
     const HEAD: FiveBar = FiveBar::new([20.0, 30.0, 50.0, 45.0, 28.0]);
 
-    /// The end point and a margin.
+    /// The coordinates of a five-bar's end point, and its type-2 margin, at two crank angles.
     fn numbers<T: Real>([left, right]: [T; 2]) -> [T; 3] {
         let (sin, cos) = T::sin_cos_each([left, right]);
         let [left, right] = [0, 1].map(|i| Vector::new(cos[i], sin[i]));

@@ -16,7 +16,7 @@ const FINE: f64 = 2.0;
 /// Bounds of x and y, mm, chassis frame.
 pub type Rectangle = [Interval; 2];
 
-/// The rectangle of each body, in the order of [`Assembly::bodies`].
+/// Returns the rectangle of each body, in the order of [`Assembly::bodies`].
 pub fn all(assembly: &Assembly, guard: &Guard) -> Vec<Rectangle> {
     const EMPTY: Interval = Interval::new(f64::INFINITY, f64::NEG_INFINITY);
     let mut rectangles = vec![[EMPTY; 2]; assembly.bodies().len()];
@@ -80,7 +80,7 @@ impl Sweep<'_> {
         }
     }
 
-    /// Extends the rectangle of each body of the mount by the bounds of its points.
+    /// Extends the rectangle of each body of the mount so that it encloses the bounds of the body's points.
     fn cover(&mut self, at: impl Fn(Vector) -> Rectangle) {
         let bodies = self
             .assembly
@@ -98,6 +98,7 @@ impl Sweep<'_> {
     }
 }
 
+/// The points of a body's shapes, each with its shape's radius.
 fn points(body: &Body) -> impl Iterator<Item = (Vector, f64)> {
     let shapes = body.prisms.iter().flat_map(|prism| &prism.add);
     shapes.flat_map(|shape| shape.points.iter().map(|&point| (point, shape.radius)))

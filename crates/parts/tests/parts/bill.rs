@@ -1,4 +1,4 @@
-//! The bill counts the bodies of the assembly, and its spring is that of the strut.
+//! Tests of the bill of materials: it counts the bodies of the assembly, and its spring is the strut's spring.
 
 use lizard_parts::{Assembly, Bill, Item, Kind, SpringEffect};
 
@@ -8,6 +8,7 @@ fn bill(name: &str) -> (Assembly, Bill) {
     bill_with(name, "")
 }
 
+/// The bill of a robot of `robots/`, with `more` lines added to its robot.toml.
 fn bill_with(name: &str, more: &str) -> (Assembly, Bill) {
     let assembly = crate::assembly(name, more);
     let bill = Bill::of(&assembly, &assembly.parts(), &neutral(&assembly));
@@ -37,7 +38,8 @@ fn every_body_is_printed_or_bought() {
 #[test]
 fn a_robot_that_is_the_same_on_both_sides_has_its_mass_in_the_middle() {
     let (_, paper) = bill("paper");
-    // Everything except board and supply is symmetric, and those are balanced to within the tolerance.
+    // Everything except board and supply is symmetric, and board and supply balance each other to within the
+    // tolerance.
     let error = paper.centre[0].abs().max(paper.centre[1].abs());
     assert!(error < 1.0, "{:?}", paper.centre);
     assert!((350.0..450.0).contains(&paper.grams), "{}", paper.grams);
@@ -145,7 +147,8 @@ fn a_leg_is_held_against_friction_and_a_caught_foot_spares_no_servo() {
     // tenths of the stall torque of an SG-90.
     assert!(12.0 < hold.way[0] && hold.way[1] < 25.0, "{:?}", hold.way);
     assert!((131.0..160.0).contains(&hold.end[1]) && !hold.lets_servo_turn());
-    // Checked with the triangle of arm, ground line and strut: the strut is 5 mm longer, with the longest lever.
+    // An independent check of the slot's end from the plan of the leg: there the strut is 5 mm longer, and the torque
+    // is the spring's force times the derivative of the strut's length.
     let robot = assembly.robot();
     let stretched = |lag: f64| {
         let angle = robot.servos()[1].neutral + 20.0;

@@ -1,6 +1,7 @@
 //! Tests of what matters to a builder: leads, springs, screws on sale, walls, marks, roofs.
 //!
-//! The outlines of the layers are tested point by point, not by the shapes that the proof of fit uses.
+//! The outlines of the layers are tested point by point, so the tests do not depend on the shapes that the proof of
+//! fit uses.
 
 use lizard_kinematics::{End, Vector};
 use lizard_parts::{Body, Kind, Loop, Mesh, Outline, Part, Prism, Solid, coupon};
@@ -21,6 +22,7 @@ fn points(middle: Vector, size: Vector) -> Vec<Vector> {
     rows.map(|by| middle + by).collect()
 }
 
+/// The heights and the outline of each layer.
 fn layers(prisms: &[Prism]) -> Vec<([f64; 2], Outline)> {
     let layer = |prism: &Prism| (prism.z, Outline::of(prism));
     prisms.iter().map(layer).collect()
@@ -48,7 +50,7 @@ fn a_servo_goes_into_the_plate_with_its_lead() {
                         );
                     }
                 }
-                // The shaft is at that end.
+                // The shaft is at the same end of the case as the lead.
                 let shaft = assembly.layout().shafts[i];
                 assert!((shaft - edge).length() < servo.shaft + 1e-9);
             }
@@ -189,7 +191,7 @@ fn along(line: &Loop) -> Vec<Vector> {
     points
 }
 
-/// The thinnest wall between two loops of a layer of a part.
+/// The thickness of the thinnest wall between two loops of a layer of a part, mm.
 fn thinnest(part: &Part) -> f64 {
     let mut smallest = f64::INFINITY;
     for prism in &part.prisms {
@@ -323,7 +325,7 @@ fn no_hole_of_a_printed_part_begins_in_the_air() {
                 }
             }
         }
-        // There are two in each link, and one in each crank, foot and pad.
+        // There are two closed holes in each link, and one in each crank, foot and pad.
         assert_eq!(roofs, 20, "{name}");
     }
 }

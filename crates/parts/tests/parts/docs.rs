@@ -10,7 +10,7 @@ fn read(path: &str) -> String {
     std::fs::read_to_string(&path).unwrap_or_else(|fault| panic!("{path}: {fault}"))
 }
 
-/// The block of the page that lists all keys.
+/// The TOML block of docs/build.md that lists all keys.
 fn block() -> String {
     let page = read("docs/build.md");
     let blocks = page.split("```toml\n").skip(1);
@@ -53,7 +53,8 @@ fn the_page_has_every_key() {
     assert!(asked > 30, "{asked} keys of {printed}");
 }
 
-/// Compares the text of a page between a mark and the end mark with `expected`, or writes it there.
+/// Compares the text of a page between a start mark and the end mark with `expected`. If BLESS_DOCS is set, writes
+/// `expected` into the page instead.
 fn quoted(path: &str, start: &str, expected: &str) {
     const END: &str = "<!-- end of the list -->";
     let page = read(path);

@@ -23,7 +23,7 @@ fn holes(body: &Body) -> Vec<(f64, f64)> {
     found
 }
 
-/// Checks that two holes of a body are this far apart.
+/// Checks that some two holes of a body are `mm` apart.
 #[track_caller]
 fn assert_hole_distance(assembly: &Assembly, name: &str, mm: f64) {
     let holes = holes(body(assembly, name));
@@ -162,8 +162,8 @@ fn a_link_is_cut_through_at_its_holes_and_milled_at_its_pockets() {
     let layers: Vec<_> = layers
         .map(|layer| (&*layer.name, layer.loops.len()))
         .collect();
-    // Outline, crank, arm, anchor, hub and two small screws; two hexagonal heads; the horn;
-    // the anchor's head.
+    // Cut through: the outline, the holes of crank, arm, anchor and hub, and those of two small screws.
+    // Pockets: for two hexagonal heads, for the horn, and for the head of the anchor's screw.
     assert_eq!(
         layers,
         [

@@ -5,7 +5,7 @@ use lizard_parts::Clearance;
 
 use crate::{ROBOTS, assembly, body, slotted};
 
-/// The nearest pair of parts of the paper's robot with changed dimensions.
+/// The nearest pair of parts of the paper's robot with changed dimensions; `None` if no parts are within 1 mm.
 fn nearest(parts: &str) -> Option<Clearance> {
     let assembly = slotted("paper", parts);
     assembly.nearest(assembly.poses(9), 1.0).into_iter().next()

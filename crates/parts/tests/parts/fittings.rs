@@ -1,10 +1,11 @@
-//! Supply, strips and plugs: each has a space on the robot, and products that fit into it.
+//! Tests of the fittings (supply, strips, plugs): each has a space on the robot, and products that fit into it.
 
 use lizard_parts::{Assembly, BATTERIES, Body, Fitting, Kind, Price, Shape, places};
 use lizard_robot::{FUSE, SWITCH};
 
 use crate::{ROBOTS, assembly};
 
+/// The bodies that stand for a fitting.
 fn bodies(assembly: &Assembly, fitting: Fitting) -> Vec<&Body> {
     let bodies = assembly.bodies().iter();
     bodies
@@ -12,7 +13,7 @@ fn bodies(assembly: &Assembly, fitting: Fitting) -> Vec<&Body> {
         .collect()
 }
 
-/// Lengths of a box, the shortest first.
+/// Sorts the lengths of a box, the shortest first, so that a product may be turned to fit.
 fn sorted(mut size: [f64; 3]) -> [f64; 3] {
     size.sort_by(f64::total_cmp);
     size
@@ -59,7 +60,7 @@ fn both_batteries_that_are_named_go_into_the_room_of_every_robots_battery() {
             assert!(fits, "{name}: {product} in {room:?}");
             assert!(places(room).contains(product.name));
         }
-        // A space into which none fits lists none.
+        // A space into which no known battery fits lists no battery.
         assert!(!places([20.0, 30.0, 10.0]).contains(BATTERIES[0].name));
     }
 }
@@ -133,7 +134,7 @@ fn a_tie_slot_has_a_wall_on_each_side_and_nothing_stands_in_the_ties_way() {
 
 #[test]
 fn the_fuse_carries_what_the_converter_draws_and_the_list_names_both_ratings() {
-    // From a battery of two cells at 3.2 V, with a loss of 15 %.
+    // The battery's current for 3 A at 5 V: two cells at 3.2 V, and a converter that loses 15 %.
     let max = 3.0 * 5.0 / (0.85 * 2.0 * 3.2);
     assert!(max < f64::from(FUSE), "{max}");
     for (fitting, rating) in [(Fitting::Fuse, FUSE), (Fitting::Switch, SWITCH)] {

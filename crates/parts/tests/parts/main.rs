@@ -1,4 +1,4 @@
-//! Tests of the robot's parts, each with some of the robot files in robots/.
+//! Tests of the robot's parts; each test uses some of the robot files in robots/.
 
 use lizard_kinematics::Solution;
 use lizard_parts::{Assembly, Body};
@@ -25,10 +25,10 @@ const ROBOTS: [&str; 4] = ["paper", "large", "unequal", "own-gaits"];
 /// The file of robots/ whose parts equal the paper's except for the pads, as a test shows.
 const GRAIN: &str = "grain";
 
-/// The lines that give the legs slotted struts.
+/// The lines of robot.toml that give the legs slotted struts.
 const STRUT: &str = "[leg.drive]\nkind = \"strut\"";
 
-/// The robot of a file of robots/, with more lines appended.
+/// The robot of a file of robots/, with more lines of TOML appended.
 fn with(name: &str, more: &str) -> Robot {
     let path = format!("{}/../../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(&path).expect(&path);
@@ -46,13 +46,13 @@ fn slotted(name: &str, more: &str) -> Assembly {
     assembly(name, &format!("{STRUT}\n{more}"))
 }
 
-/// The robot's joints at neutral.
+/// The positions of the robot's joints at neutral.
 fn neutral(assembly: &Assembly) -> Solution {
     let robot = assembly.robot();
     robot.lizard().solve(&robot.neutral()).expect("neutral")
 }
 
-/// The body with a name.
+/// The body with a given name.
 #[track_caller]
 fn body<'a>(assembly: &'a Assembly, name: &str) -> &'a Body {
     assembly.body(name).expect(name)

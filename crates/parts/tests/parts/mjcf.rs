@@ -116,7 +116,7 @@ fn pads_of_other_shapes_touch_the_floor_and_light_limbs_leave_the_robots_mass() 
                 "{pads:?} {layer}: {z} {high}"
             );
             if let Pads::Terraces(_) = pads {
-                // Pythagoras: its rim is on the ball.
+                // Pythagoras: the rim of the disc's middle plane is on the ball of the dome.
                 let from_middle = (1000.0 * size[0]).hypot(radius - z);
                 assert!(
                     (from_middle - radius).abs() < 1e-3,
@@ -163,7 +163,7 @@ fn a_floor_has_its_blocks_its_slope_and_its_grip_on_each_pad() {
         let name = format!("pad {leg}");
         let pad = geoms().find(|geom| geom.attribute("name") == Some(&name));
         let pad = pad.expect("a pad");
-        // Otherwise MuJoCo would use the larger friction of pad and floor.
+        // Without priority, MuJoCo would use the larger friction of pad and floor.
         assert_eq!(pad.attribute("priority"), Some("1"));
         assert_eq!(numbers(pad, "friction")[0], friction);
     }
@@ -224,7 +224,7 @@ fn a_slotted_strut_pulls_with_its_springs_force_and_yields_one_way() {
     let all = bodies(&document);
     for leg in LEGS {
         let slot = all[&format!("slot {leg}")].1;
-        // A steel wire of 0.6 mm, about 0.7 m long.
+        // A steel wire of 0.6 mm, about 0.7 m long, weighs about 1.6 g.
         let grams = 1000.0 * numbers(child(slot, "inertial"), "mass")[0];
         assert!((0.5..2.5).contains(&grams), "{grams}");
         let joint = child(slot, "joint");
@@ -260,7 +260,7 @@ fn a_servo_turns_no_faster_and_no_stronger_than_it_can() {
             let [smallest, largest] = numbers(*motor, "forcerange")[..] else {
                 panic!("two torques")
             };
-            // 1.8 kg cm.
+            // The stall torque of the SG-90, 1.8 kg cm.
             assert!(
                 (largest - 0.018 * 9.80665).abs() < 1e-6 && smallest == -largest,
                 "{largest}"
@@ -300,7 +300,8 @@ fn servos_and_joints_of_a_robot_file_are_those_of_the_engine() {
     };
     assert_eq!(friction("link"), [0.017; 4]);
     assert_eq!(friction("rod"), [0.5; 2]);
-    // At 4.8 V: 1.2 kg cm and 400 deg/s. Both are less at 4.2 V; the rotor's inertia is the same.
+    // The servo "copy" has 1.2 kg cm and 400 deg/s at 4.8 V. At 4.2 V, both are less in proportion, so the damping
+    // stays the same, and so does the rotor's inertia.
     let link = joints
         .iter()
         .find(|node| node.attribute("name") == Some("link A1"))

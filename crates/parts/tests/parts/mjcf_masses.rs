@@ -8,7 +8,7 @@ use roxmltree::Document;
 use crate::mjcf_reader::{bodies, child, neutral, numbers, written};
 use crate::{ROBOTS, with};
 
-/// Mass, g, and mass centre of all bodies together: forward, left, above the plate, mm.
+/// The mass of all bodies of a MuJoCo file together, g, and their mass centre: forward, left, above the plate, mm.
 pub fn weighed(text: &str) -> (f64, [f64; 3]) {
     let document = Document::parse(text).expect("well formed");
     let (mut mass, mut moment) = (0.0, [0.0; 3]);
@@ -79,7 +79,8 @@ fn the_mass_that_the_contact_model_gives_a_leg_is_that_of_its_parts() {
                 let centre = numbers(inertial, "pos");
                 (numbers(inertial, "mass")[0], centre[0].hypot(centre[1]))
             };
-            // Foot and coupler move as the pad does; crank and follower rotate about their ends.
+            // Foot and coupler move as the pad does. Crank and follower rotate about their pivots, so their mass
+            // centres move by a share of the pad's motion.
             let carried = part("foot").0 + part("leg coupler").0;
             let turned = ["crank", "follower"].map(part);
             let turned = turned.map(|(mass, lever)| mass * 1e3 * lever / ground.feet.reach);

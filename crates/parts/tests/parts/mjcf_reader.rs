@@ -7,11 +7,13 @@ use lizard_parts::{Assembly, Scene, mjcf};
 use lizard_robot::Robot;
 use roxmltree::{Document, Node};
 
+/// The positions of the robot's joints at neutral.
 pub fn neutral(robot: &Robot) -> Solution {
     let solved = robot.lizard().solve(&robot.neutral());
     solved.expect("neutral closes")
 }
 
+/// The MuJoCo file of a robot whose scene is changed by `change`.
 pub fn written(robot: &Robot, change: impl FnOnce(&mut Scene)) -> String {
     let assembly = Assembly::new(robot);
     let mut scene = Scene::of(&assembly);
@@ -19,6 +21,7 @@ pub fn written(robot: &Robot, change: impl FnOnce(&mut Scene)) -> String {
     mjcf(&assembly, &neutral(robot), &scene).expect("it is made")
 }
 
+/// The numbers in an attribute, which blanks separate.
 pub fn numbers(node: Node, attribute: &str) -> Vec<f64> {
     let text = node.attribute(attribute).expect(attribute);
     let parts = text.split(' ');
@@ -33,6 +36,7 @@ pub struct Placed {
 }
 
 impl Placed {
+    /// Converts a point from the body's frame to the world, m.
     pub fn point(&self, point: &[f64]) -> [f64; 3] {
         let (sin, cos) = self.turn.sin_cos();
         [
@@ -72,12 +76,13 @@ fn find<'a>(document: &'a Document, tag: &str) -> Node<'a, 'a> {
     child(document.root_element(), tag)
 }
 
-/// The child elements of an element of the root.
+/// The child elements of the root's child `tag`.
 pub fn elements<'a>(document: &'a Document, tag: &str) -> Vec<Node<'a, 'a>> {
     let children = find(document, tag).children();
     children.filter(Node::is_element).collect()
 }
 
+/// The first child element with a tag.
 pub fn child<'a>(node: Node<'a, 'a>, tag: &str) -> Node<'a, 'a> {
     let found = node.children().find(|node| node.has_tag_name(tag));
     found.expect(tag)

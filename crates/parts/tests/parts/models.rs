@@ -1,5 +1,5 @@
-//! Tests with an XML parser that the bodies in URDF and SDF are those in the MuJoCo file. In `scripts/models-test`,
-//! parsers by other authors close the loops at other poses.
+//! Tests with an XML parser that the bodies in the URDF and SDF files equal those in the MuJoCo file. The tests of
+//! `scripts/models-test` use parsers by other authors, and close the loops at other poses than neutral.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_PI_2;
@@ -12,7 +12,7 @@ use roxmltree::{Document, Node};
 use crate::mjcf_reader::{Placed, bodies, child, neutral, numbers, written};
 use crate::{ROBOTS, with};
 
-/// URDF and SDF of a robot, and the names of their meshes.
+/// The URDF and the SDF file of a robot whose scene is changed by `change`, and the names of their mesh files.
 fn both(robot: &Robot, change: impl FnOnce(&mut Scene)) -> ([String; 2], BTreeSet<String>) {
     let assembly = Assembly::new(robot);
     let mut scene = Scene::of(&assembly);
@@ -27,6 +27,7 @@ fn both(robot: &Robot, change: impl FnOnce(&mut Scene)) -> ([String; 2], BTreeSe
     (text, names.collect())
 }
 
+/// The text in the first child element with a tag.
 fn text_of(node: Node, tag: &str) -> String {
     child(node, tag).text().expect(tag).to_owned()
 }
@@ -36,7 +37,7 @@ fn floats(text: &str) -> Vec<f64> {
     parts.map(|part| part.parse().expect("a number")).collect()
 }
 
-/// The elements of a kind by name. The names are unique.
+/// The child elements with a tag, by their name attributes. Fails if a name contains a blank or occurs twice.
 fn named<'a>(parent: Node<'a, 'a>, tag: &str) -> BTreeMap<String, Node<'a, 'a>> {
     let mut all = BTreeMap::new();
     for node in parent.children().filter(|node| node.has_tag_name(tag)) {
@@ -50,7 +51,7 @@ fn named<'a>(parent: Node<'a, 'a>, tag: &str) -> BTreeMap<String, Node<'a, 'a>> 
 /// A body: placement, mass, mass centre, and inertia as xx, yy, zz, xy, xz, yz.
 type Read = (Placed, f64, Vec<f64>, Vec<f64>);
 
-/// A frame that is given by six numbers relative to another frame.
+/// The placement of a frame that is given relative to another one by six numbers: x, y, z, roll, pitch, yaw.
 fn on(frame: Placed, six: &[f64]) -> Placed {
     assert_eq!(six[3..5], [0.0; 2], "it stays upright");
     Placed {
@@ -65,6 +66,7 @@ const WORLD: Placed = Placed {
 };
 const INERTIA: [&str; 6] = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
 
+/// The bodies of a URDF file by name. Each is placed by the joints from the root to its link.
 fn read_urdf(document: &Document) -> BTreeMap<String, Read> {
     let root = document.root_element();
     let (links, joints) = (named(root, "link"), named(root, "joint"));
@@ -100,6 +102,7 @@ fn read_urdf(document: &Document) -> BTreeMap<String, Read> {
     read
 }
 
+/// The bodies of an SDF file by name. Each is placed by the poses of the links to which it is relative.
 fn read_sdf(document: &Document) -> BTreeMap<String, Read> {
     let model = child(document.root_element(), "model");
     let links = named(model, "link");
@@ -144,7 +147,7 @@ fn their_bodies_are_those_of_mujocos_file_turned_ahead() {
                     assert_eq!([*mass][..], numbers(inertial, "mass"), "{name}");
                     assert_eq!(*centre, numbers(inertial, "pos"), "{name}");
                     assert_eq!(*inertia, numbers(inertial, "fullinertia"), "{name}");
-                    // Their x axis is MuJoCo's y axis.
+                    // The x axis in URDF and SDF is the y axis in MuJoCo's file.
                     let [x, y, z] = placed.at;
                     for (found, wanted) in found.at.into_iter().zip([y, -x, z]) {
                         assert!((found - wanted).abs() < 1e-8, "{name} {found} {wanted}");
@@ -200,7 +203,7 @@ fn servos_have_their_names_ranges_and_powers_in_both() {
     assert!(in_sdf.keys().all(|joint| !links.contains_key(joint)));
     for (servo, name) in NAMES.into_iter().enumerate() {
         let (smallest, largest) = robot.servos()[servo].travel();
-        // 1.8 kg cm and 500 deg/s.
+        // The SG-90: 1.8 kg cm and 500 deg/s.
         let wanted = [
             smallest.to_radians(),
             largest.to_radians(),

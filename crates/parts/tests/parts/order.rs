@@ -7,6 +7,7 @@ use lizard_parts::{
 
 use crate::{ROBOTS, assembly, neutral, slotted};
 
+/// The steps of the guide for a robot's kind of struts.
 fn order(assembly: &Assembly) -> Vec<Step> {
     steps(assembly.robot().drive().strut().is_some())
 }
@@ -18,9 +19,9 @@ fn every_screw_of_every_robot_can_be_reached() {
             let assembly = assembly(name, &format!("[leg.drive]\nkind = \"{kind}\""));
             let access_poses = assembly.access_poses(&order(&assembly));
             let access_poses = access_poses.unwrap_or_else(|blocked| panic!("{name}: {blocked}"));
-            // At neutral the follower covers a screw of its foot: the leg, which lies on the bench, is swung aside.
-            // In one robot a strut's shorter anchor is above its servo's seat, where no socket reaches its nut: the
-            // link is turned.
+            // At neutral the follower covers a screw of its foot; the leg, still on the bench, is swung aside. In
+            // the robot `unequal`, the short arm of a strut's anchor is above the servo's seat, where no socket
+            // reaches the anchor's nut; the link is turned.
             for aside in access_poses {
                 let screw = match aside.step {
                     7 => "screw foot",
@@ -35,7 +36,8 @@ fn every_screw_of_every_robot_can_be_reached() {
     }
 }
 
-/// The blocked screws of the paper's robot with changed steps, each with the body in its way.
+/// The blocked screws of the paper's robot with changed steps, each with the body in its way; without the screws of
+/// the feet, which are blocked at neutral in any order.
 fn blocked(change: impl FnOnce(&mut Vec<Step>)) -> Vec<(String, ScrewOperation, String)> {
     let assembly = slotted("paper", "");
     let mut steps = order(&assembly);
@@ -83,7 +85,7 @@ fn a_pad_without_a_hole_for_the_key_is_found_when_the_feet_are_levelled() {
         ("screw height LF", ScrewOperation::Turn)
     );
     assert_eq!(refused.by, "pad LF");
-    // The pad is found where it is mounted and where the robot is levelled.
+    // The check finds the pad both in the step that mounts it and in the step that levels the feet.
     let steps = order(&glued);
     let level = steps.iter().position(|step| step.title == "Level the feet");
     let level = 1 + level.expect("a step");

@@ -1,4 +1,4 @@
-//! Pads for a strip with a grain: the notch for the strip's end, and the direction that the notch shows.
+//! Tests of pads for a strip with a grain: the notch for the strip's end, and the direction that the notch marks.
 
 use lizard_kinematics::Vector;
 use lizard_parts::{Bill, Outline, Part, Shape, papers};
@@ -6,7 +6,7 @@ use lizard_robot::servo::LEGS;
 
 use crate::{GRAIN, assembly, body, neutral};
 
-/// The notch of a pad: its only hole with corners.
+/// The notch of a pad, its only hole with corners; `None` for a plain pad.
 fn notch(prisms: &[lizard_parts::Prism]) -> Option<&Shape> {
     let mut cuts = prisms.iter().flat_map(|prism| &prism.cut);
     cuts.find(|cut| cut.points.len() > 1)

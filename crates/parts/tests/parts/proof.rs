@@ -114,7 +114,7 @@ fn the_robots_with_gaits_of_their_own_have_the_papers_parts() {
     let plain = |of: Assembly| {
         of.altered(|bodies| bodies.retain(|body| body.kind != lizard_parts::Kind::Pad))
     };
-    // Pads with a strip lie within the plain ones, as the tests of the pads show.
+    // The pads of `grain` are not compared: they lie within plain pads, as the tests in `pads.rs` show.
     for (own, paper) in [
         (slotted("own-gaits", ""), paper.clone()),
         (plain(slotted(GRAIN, "")), plain(paper)),
@@ -136,12 +136,13 @@ fn every_file_of_robots_is_here() {
     assert_eq!(BTreeSet::from_iter(names), BTreeSet::from_iter(here));
 }
 
-/// The clash among the pairs that include a body for which `of` is true.
+/// The worst clash among the pairs that include a body for which `of` is true.
 fn find_clash(assembly: &Assembly, of: impl Fn(&Body) -> bool) -> Clash {
     let proof = assembly.prove_some(|a, b| of(a) || of(b), |_, _| ());
     proof.judge().expect_err("nothing is found")
 }
 
+/// Checks that a clash is an overlap of two bodies whose names begin with the given texts, in either order.
 #[track_caller]
 fn assert_overlap(clash: Clash, first: &str, second: &str) {
     let Clash::Overlap(found) = clash else {
@@ -255,7 +256,7 @@ fn parts_that_come_too_near_are_refused_with_their_pose() {
     assert!(message.contains(" pose "), "{message}");
 }
 
-/// The bounds of a shape along x, shifted by `from`.
+/// The smallest and largest x of a shape that is shifted by `from` along x, mm.
 fn extent_along_x(shape: &Shape, from: f64) -> [f64; 2] {
     let x = shape.points.iter().map(|point| point.x + from);
     let low = x.clone().fold(f64::INFINITY, f64::min) - shape.radius;

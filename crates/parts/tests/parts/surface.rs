@@ -1,4 +1,4 @@
-//! Every printed part of every robot has a closed surface of the right volume.
+//! A test that every printed part of every robot has a closed surface of the right volume.
 
 use lizard_parts::{Mesh, Solid};
 

@@ -15,16 +15,17 @@ const TCCR1B: usize = 0x81;
 const TCNT1: usize = 0x84;
 const OCR1A: usize = 0x88;
 const OCR1B: usize = 0x8a;
-/// OCF1B in TIFR1, OCIE1B in TIMSK1.
+/// Compare match B: the bit OCF1B in TIFR1, and OCIE1B in TIMSK1.
 const B: u8 = 1 << 2;
-/// OCF1A in TIFR1, OCIE1A in TIMSK1.
+/// Compare match A: the bit OCF1A in TIFR1, and OCIE1A in TIMSK1.
 const A: u8 = 1 << 1;
-/// WGM12 and CS10 in TCCR1B: CTC up to OCR1A, every cycle is counted.
+/// The value of TCCR1B that starts the timer, WGM12 and CS10: it counts every cycle up to OCR1A (CTC mode).
 const RUN: u8 = 1 << 3 | 1;
 
 /// A compare value that the timer never reaches.
 const NEVER: u16 = u16::MAX;
 
+/// The PORT register at a data address.
 #[inline(always)]
 fn port(address: u8) -> *mut u8 {
     with_exposed_provenance_mut(usize::from(address))
@@ -41,8 +42,8 @@ unsafe fn set<T>(register: usize, value: T) {
 }
 
 impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
-    /// Drives the pins low and makes them outputs, in the order of the widths. Call it once, before the first
-    /// [`Engine::submit`]; with interrupts off if any handler changes other pins of these ports.
+    /// Sets the pins, in the order of the widths, drives them low and makes them outputs. Call it once, before the
+    /// first [`Engine::submit`]; with interrupts off if any handler changes other pins of these ports.
     #[inline(always)]
     pub fn connect(&self, pins: [Pin; SERVOS]) {
         for (slot, pin) in self.pins.iter().zip(&pins) {
@@ -52,7 +53,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         self.lower();
     }
 
-    /// [`Engine::start`] for pins that are a constant: first drives them low.
+    /// Drives pins that are known at compile time low, makes them outputs, and starts as [`Engine::start`] does.
     ///
     /// # Safety
     /// See [`Engine::start`].
@@ -104,7 +105,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         }
     }
 
-    /// The number of edges that were late because an interrupt was delayed for longer than the lead allows. It
+    /// The number of edges that were late because an interrupt was delayed for longer than [`LEAD`] allows. It
     /// stays at 65535.
     #[inline(always)]
     pub fn late(&self) -> u16 {

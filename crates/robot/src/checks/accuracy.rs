@@ -5,7 +5,7 @@ use lizard_core::numbers::units::CYCLE16;
 use crate::gaits::Gait;
 use crate::tables::Tables;
 
-/// The error of a gait's tables over a cycle.
+/// The error of a gait's tables over a cycle, compared with the gait in floating point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TableError {
     /// Largest error over all servos, deg.

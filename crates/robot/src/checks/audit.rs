@@ -1,5 +1,5 @@
-//! The check of every sample of a gait, as the firmware will send it. First by forward kinematics: head, tail,
-//! sides and legs against all limits. Then by the firmware's own guard, which would stop a gait that is closer to a
+//! The check of every sample of a gait, as the firmware will send it. Forward kinematics checks head, tail, sides
+//! and legs against all limits. Then the firmware's own guard is asked, which would stop a gait that is closer to a
 //! limit than its integers resolve.
 
 use lizard_core::guard::clearance::Clearance;
@@ -26,9 +26,9 @@ const ERROR_LIMIT: f64 = 0.50;
 /// The smallest margin of a kind over a cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LeastMargin {
-    /// The condition whose margin it is.
+    /// The condition that has this margin.
     pub what: Check,
-    /// Value, as a sine.
+    /// The smallest value of the margin, as a sine.
     pub value: f64,
     /// Phase of the smallest value, 0 to 1.
     pub phase: f64,
@@ -85,11 +85,11 @@ impl LeastMargin {
     }
 }
 
-/// A limit that a gait breaks, in words.
+/// The message about a limit that a gait breaks.
 pub(crate) struct Broken {
-    /// The consequence for the robot, without figures.
+    /// The consequence for the robot, in words without figures.
     pub meaning: String,
-    /// The figures, and where they occur.
+    /// The figures, and the phase at which they occur.
     pub problem: String,
 }
 
@@ -195,7 +195,7 @@ fn condition(hazard: &Hazard) -> Check {
     }
 }
 
-/// True if a violation is of the same limit as an earlier one and exceeds it by more.
+/// True if a violation breaks the same limit as an earlier violation, and by more.
 fn exceeds(violation: Violation, earlier: Violation) -> bool {
     let by = |v: Violation| (v.value - v.limit).abs();
     violation.what == earlier.what && by(violation) > by(earlier)
@@ -215,7 +215,7 @@ fn phases(table: &TableGait) -> Vec<u16> {
 
 /// Refuses servo angles outside a servo's travel.
 fn check_travels(robot: &Measures, angles: [f64; 4], phase: f64) -> Result<(), Broken> {
-    // The ends of the travel and the sample are both rounded to an angle step.
+    // Both the limits of the travel and the sample are rounded to an angle step.
     const STEP: f64 = 1.0 / STEPS_PER_DEGREE;
     for ((servo, angle), name) in robot.servos.iter().zip(angles).zip(NAMES) {
         let (min, max) = servo.travel();

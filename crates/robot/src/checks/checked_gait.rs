@@ -87,7 +87,7 @@ impl CheckedGait {
         &self.gait.strides
     }
 
-    /// The gait as bars; `None` if it does not move or follows a path.
+    /// The gait as bars; `None` if the gait does not move, or if a leg stands still or follows a path.
     pub fn bars(&self) -> Option<Bars> {
         self.moves().then(|| Bars::of(&self.gait)).flatten()
     }
@@ -129,7 +129,7 @@ impl CheckedGait {
     }
 
     /// The frames of one cycle at full speed, beginning at phase 0: the time of each in s, and its phase in 1/65536
-    /// cycle. The last one is the first that completes the cycle.
+    /// cycle. The last frame is the first at or after the end of the cycle.
     pub fn frames(&self) -> impl Iterator<Item = (f64, u16)> + use<> {
         let increment = self.table().increment;
         // 1.1 s are 55 frames, although 1.1 * 50.0 is slightly more in floating point.
@@ -156,16 +156,18 @@ impl CheckedGait {
         accuracy::worst(&self.gait, self.index, &self.tables, count)
     }
 
-    /// Predicts one cycle on this ground, from phase 0, with the contact model. If legs lag, it is the second
-    /// cycle, which all later ones repeat.
+    /// Predicts one cycle on this ground, from phase 0, with the contact model. If legs lag, the result is the
+    /// second cycle, which all later cycles repeat.
     ///
-    /// The parts that depend on ties are determined with rigid legs, because ties are between pads.
+    /// A part of the movement is unknown if it depends on a tie: two feet that pull against the other two, equally
+    /// strongly. Ties are found with rigid legs, because they depend on the pads alone.
     pub fn predict(&self, ground: &Ground) -> Prediction {
         let known = ground.rigid().predict(self.cycle(COARSE));
         known.keep_known(self.simulate_cycle(ground).travel)
     }
 
-    /// Simulates one cycle on this ground, even if its result depends on ties. If legs lag, it is the second cycle.
+    /// Simulates one cycle on this ground, even if the result depends on ties. If legs lag, the result is the second
+    /// cycle.
     pub fn simulate_cycle(&self, ground: &Ground) -> Walked {
         let mut walker = Walker::new(*ground, self.sweeps(self.phase(0.0)));
         let mut steps = STEPS;
@@ -187,13 +189,13 @@ impl CheckedGait {
         }
     }
 
-    /// Simulates the second cycle on this ground frame by frame, as the firmware sends it, with servos that have
-    /// these motors. `pace` is 1 for the gait's own speed.
+    /// Simulates two cycles on this ground frame by frame, as the firmware sends them, with servos that have these
+    /// motors, and returns the movement in the second. `pace` is 1 for the gait's own speed.
     pub fn driven(&self, ground: &Ground, motors: &Motors, pace: f64) -> Travel {
         self.driven_scaled(ground, motors, pace, 1.0)
     }
 
-    /// Simulates that cycle with servos that turn `scale` times as far as the firmware assumes.
+    /// Simulates as [`CheckedGait::driven`] does, with servos that turn `scale` times as far as the firmware assumes.
     pub(crate) fn driven_scaled(
         &self,
         ground: &Ground,
@@ -220,7 +222,7 @@ impl CheckedGait {
         cycle()
     }
 
-    /// The sweeps of one cycle in equal steps of time, both ends included.
+    /// The legs' sweeps over one cycle in equal steps of time, at its start, its end and between.
     fn cycle(&self, steps: usize) -> impl Iterator<Item = [f64; 4]> {
         (0..=steps).map(move |i| self.sweeps(self.phase(self.period() * i as f64 / steps as f64)))
     }
@@ -231,13 +233,13 @@ const STEPS: usize = 1000;
 /// Steps in a cycle with legs that lag, which takes longer to compute; four times as many change no result by 0.05
 /// mm.
 const LAGGING_STEPS: usize = 250;
-/// Steps in a cycle for detecting ties, which takes longer to compute.
+/// Steps in a cycle for detecting ties. A step of this search takes longer to compute.
 const COARSE: usize = 250;
 
 /// The result of a cycle simulated step by step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Walked {
-    /// The movement of the body.
+    /// The movement of the body over the cycle.
     pub travel: Travel,
     /// Largest lag of a leg behind its servo, deg; 0 if legs are rigid.
     pub lag: f64,

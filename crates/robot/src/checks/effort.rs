@@ -13,7 +13,7 @@ use crate::checks::checked_gait::CheckedGait;
 const STEP: f64 = 0.0025;
 /// Share of the line from which a servo has little reserve: play, cold gears or a thin wire may use it up.
 pub const HIGH_LINE_SHARE: f64 = 0.9;
-/// Factor on torque and speed with which a motor follows every gait exactly.
+/// Factor on a motor's torque and speed that makes it follow every gait exactly.
 const STRONG: f64 = 1e6;
 /// Iterations of the search for a pace.
 const ROUNDS: usize = 20;
@@ -32,7 +32,7 @@ struct Sample {
 /// The effort of the servos over a cycle of a gait.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Effort {
-    /// The servos' motors on the supply of [`Effort::of`], and their samples at the gait's own pace.
+    /// Each servo's motor as given to [`Effort::of`], and the servo's samples at the gait's own pace.
     servos: [(Motor, Vec<Sample>); 4],
 }
 
@@ -82,8 +82,8 @@ impl Effort {
         Self { servos }
     }
 
-    /// The largest share of a servo's line that the gait uses at a pace (1 is its own), on a supply that is given
-    /// as a share of that in [`Effort::of`].
+    /// The largest share of a servo's torque-speed line that the gait uses at a pace (1 is the gait's own), on a
+    /// supply that is given as a share of the supply in [`Effort::of`].
     #[must_use]
     pub fn line_share(&self, pace: f64, supply: f64) -> f64 {
         let of_servo = |(motor, samples): &(Motor, Vec<Sample>)| {
@@ -97,7 +97,8 @@ impl Effort {
         self.servos.iter().map(of_servo).fold(0.0, f64::max)
     }
 
-    /// The highest pace, up to the gait's own, at which no servo exceeds its line; 0 if one does at any pace.
+    /// The highest pace, up to 1, at which no servo exceeds its torque-speed line on a supply; 0 if a servo exceeds
+    /// its line at every pace.
     #[must_use]
     pub fn pace(&self, supply: f64) -> f64 {
         if self.line_share(1.0, supply) <= 1.0 {

@@ -3,7 +3,8 @@
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// The keys of the hips' distances ahead and to the side. If left out, they follow from the legs.
+/// The keys of the hips' distances ahead and to the side. If the keys are left out, the distances follow from the
+/// legs.
 pub const HIPS: [&str; 2] = ["leg.hip_forward", "leg.hip_side"];
 
 /// Optional keys of a robot.toml, which are added when they get a value.
@@ -43,7 +44,7 @@ impl std::fmt::Display for NoSuchKey {
 /// its table, and a missing table at the end of the text.
 ///
 /// # Errors
-/// Fails if the text is not TOML or has no number at this key.
+/// Fails if the text is not TOML, has no number at this key, or writes the table of a missing key on one line.
 pub fn with_number(text: &str, key: &str, value: f64) -> Result<String, NoSuchKey> {
     with_value(text, key, &format!("{value:?}"), |value| {
         matches!(value, DeValue::Float(_) | DeValue::Integer(_))
@@ -53,14 +54,14 @@ pub fn with_number(text: &str, key: &str, value: f64) -> Result<String, NoSuchKe
 /// Sets the list of numbers of a key, as [`with_number`] sets a number.
 ///
 /// # Errors
-/// Fails if the text is not TOML or has no list at this key.
+/// Fails if the text is not TOML, has no list at this key, or writes the table of a missing key on one line.
 pub fn with_numbers(text: &str, key: &str, values: &[f64]) -> Result<String, NoSuchKey> {
     with_value(text, key, &format!("{values:?}"), |value| {
         matches!(value, DeValue::Array(_))
     })
 }
 
-/// Adds a comment at the end of a key's line, replacing one that begins with the same word.
+/// Adds the comment `# word rest` at the end of a key's line. It replaces a comment that begins with the same word.
 ///
 /// # Errors
 /// Fails if the text is not TOML or does not have the key.
@@ -81,13 +82,14 @@ pub fn with_comment(text: &str, key: &str, word: &str, rest: &str) -> Result<Str
 /// Sets the string of a key, as [`with_number`] sets a number.
 ///
 /// # Errors
-/// Fails if the text is not TOML or has no string at this key.
+/// Fails if the text is not TOML, has no string at this key, or writes the table of a missing key on one line.
 pub fn with_word(text: &str, key: &str, word: &str) -> Result<String, NoSuchKey> {
     with_value(text, key, &format!("\"{word}\""), |value| {
         matches!(value, DeValue::String(_))
     })
 }
 
+/// Sets the value of a key, given as TOML. An old value for which `has_type` is false is an error.
 fn with_value(
     text: &str,
     key: &str,
@@ -135,7 +137,7 @@ fn with_value(
 /// Removes the line of an optional key. Without the key, the text stays as it is.
 ///
 /// # Errors
-/// Fails if the key is in a table that is written on one line.
+/// Fails if the text is not TOML, or if the key is in a table that is written on one line.
 pub fn without_key(text: &str, key: &str) -> Result<String, NoSuchKey> {
     let missing = || NoSuchKey(key.to_string());
     let document = DeTable::parse(text).map_err(|_| missing())?;
@@ -153,7 +155,7 @@ pub fn without_key(text: &str, key: &str) -> Result<String, NoSuchKey> {
     Ok(text[..start].to_string() + &text[end..])
 }
 
-/// Adds the table of a gait, in place of the gait with the same name or at the end of the text.
+/// Adds the table of a gait: in place of the gait with the same name, or else at the end of the text.
 pub fn with_gait(text: &str, name: &str, table: &str) -> String {
     let (mut result, is_replaced) = replace_gait(text, name, table);
     if !is_replaced {
@@ -163,12 +165,12 @@ pub fn with_gait(text: &str, name: &str, table: &str) -> String {
     result
 }
 
-/// Removes the tables of a gait.
+/// Removes the tables of a gait. Without the gait, the text stays as it is.
 pub fn without_gait(text: &str, name: &str) -> String {
     replace_gait(text, name, "").0
 }
 
-/// Replaces a gait's tables by `table`; also returns true if the gait existed.
+/// Replaces a gait's tables by `table`. Returns the text, and true if the gait existed.
 fn replace_gait(text: &str, name: &str, table: &str) -> (String, bool) {
     let (header, below) = (format!("[gait.{name}]"), format!("[gait.{name}."));
     let (mut result, mut is_own, mut is_replaced) = (String::new(), false, false);
@@ -203,8 +205,8 @@ pub struct WrittenRoutine {
     pub steps: Vec<String>,
 }
 
-/// The routines of a text in their order, checked or not, so that one with a mistake can be shown and corrected.
-/// Routines whose steps are not strings are left out.
+/// The routines of a text in their order. They are not checked, so that a routine with a mistake can be shown and
+/// corrected. Routines whose steps are not strings are left out.
 pub fn routines(text: &str) -> Vec<WrittenRoutine> {
     let Ok(document) = DeTable::parse(text) else {
         return Vec::new();
@@ -258,7 +260,7 @@ fn find<'a>(table: &'a DeTable<'a>, key: &str) -> Option<&'a Spanned<DeValue<'a>
     }
 }
 
-/// The end of the line that contains this position.
+/// The position of the end of the line that contains the position `from`.
 fn line_end(text: &str, from: usize) -> usize {
     text[from..]
         .find('\n')
@@ -383,6 +385,7 @@ mod tests {
 
     const ROUTINES: &str = "name = \"x\"\n\n[routine.patrol] # by night\nsteps = [\n  \"walk 4\", # on\n  \"left 6\",\n]\nrepeat = 3 # rounds\n\n[routine.about]\nsteps = ['left 12']\n";
 
+    /// The names and steps of a text's routines.
     fn written(text: &str) -> Vec<(String, Vec<String>)> {
         let all = routines(text).into_iter();
         all.map(|WrittenRoutine { name, steps }| (name, steps))

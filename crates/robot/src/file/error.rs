@@ -5,7 +5,7 @@ use std::fmt;
 /// A mistake in robot.toml, with its file, line and key.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Error {
-    /// Name of the file as it was given.
+    /// Name of the file, as given by the caller.
     pub file: String,
     /// Line of the key, counted from 1; `None` if the mistake belongs to no line.
     pub line: Option<usize>,
@@ -15,6 +15,7 @@ pub struct Error {
     pub meaning: Option<String>,
     /// The message without file, line, key and meaning.
     pub problem: String,
+    /// True if `problem` is a clause with its own subject; false if the key is its subject.
     pub(crate) is_clause: bool,
 }
 
@@ -73,7 +74,7 @@ impl Fault {
         }
     }
 
-    /// The same mistake with its consequence for the robot: "in "walk" the left front leg would lock".
+    /// Adds the consequence for the robot to the mistake: "in "walk" the left front leg would lock".
     pub fn meaning(self, meaning: impl Into<String>) -> Self {
         Self {
             meaning: Some(meaning.into()),
@@ -90,7 +91,7 @@ impl Fault {
         )
     }
 
-    /// The same mistake with its file and line.
+    /// Adds file and line to the mistake.
     pub fn in_file(self, file: String, line: Option<usize>) -> Error {
         Error {
             file,
@@ -116,7 +117,7 @@ pub(crate) fn short(value: f64) -> String {
 pub(crate) fn hint(word: &str, all: &[&str]) -> String {
     let near = all.iter().map(|known| (distance(word, known), known)).min();
     match near {
-        // Up to two letters of a word may be wrong, but none in a word of two letters.
+        // Up to two letters of a word may be wrong; in a word of two letters, only the case may be.
         Some((d, known)) if d == 0 || (d <= 2 && known.len() > 2 && d < known.len()) => {
             format!("did you mean \"{known}\"?")
         }

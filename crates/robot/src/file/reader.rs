@@ -27,7 +27,8 @@ pub(crate) fn parse<T>(text: &str, read: impl Fn(&DeTable) -> Checked<T>) -> Res
     })
 }
 
-/// The position in the text of a key, or of the innermost existing table in its name.
+/// The position in the text of a key, or of the innermost existing table in its name; `None` if no table of the name
+/// exists.
 fn position(mut table: &DeTable, key: &str) -> Option<usize> {
     let (mut rest, mut found) = (key, None);
     loop {
@@ -69,7 +70,7 @@ pub(crate) enum KeyRead {
 
 #[cfg(test)]
 thread_local! {
-    /// The reads of this thread: full names of the keys, in order.
+    /// The reads of this thread, in order, each with the full name of its key.
     pub(crate) static READS: std::cell::RefCell<Vec<(String, KeyRead)>> = const { std::cell::RefCell::new(Vec::new()) };
 }
 
@@ -108,7 +109,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Refuses keys outside `allowed`.
+    /// Returns the table if all its keys are in `allowed`; refuses any other key.
     pub fn only(self, allowed: &[&str]) -> Checked<Self> {
         #[cfg(test)]
         for name in allowed {
@@ -124,7 +125,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Refuses keys of an earlier version of the file; `instead` says what to write.
+    /// Refuses the keys `names`, which belong to an earlier version of the file; `instead` says what to write.
     pub fn moved(&self, names: &[&str], instead: &str) -> Checked<()> {
         match names.iter().find(|name| self.has(name)) {
             Some(name) => {
@@ -189,7 +190,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Refuses a number that is not less than that of another key of this table.
+    /// Refuses the `value` of a key that is not less than `limit`, the value of the key `other` of this table.
     pub fn require_less(&self, name: &str, value: f64, other: &str, limit: f64) -> Checked<()> {
         if value < limit {
             return Ok(());
@@ -286,12 +287,14 @@ impl<'a> Section<'a> {
         self.note(name, read);
     }
 
+    /// Returns the value of a key; a missing key is a mistake.
     fn value(&self, name: &str, expected: &str) -> Checked<&'a DeValue<'a>> {
         let missing = || self.fault(name, format!("is missing; it must be {expected}"));
         let value = self.table.get(name).map(Spanned::get_ref);
         value.ok_or_else(missing)
     }
 
+    /// Returns a key's value if it is in a range, both limits included; refuses it otherwise.
     fn within(&self, name: &str, value: f64, range: (f64, f64), unit: &str) -> Checked<f64> {
         match (range.0..=range.1).contains(&value) {
             true => Ok(value),
@@ -299,6 +302,7 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// The mistake of a value that has another type than expected.
     fn wrong_type(&self, name: &str, value: &DeValue, expected: &str) -> Fault {
         let found_type = match value {
             DeValue::String(text) => format!("the string \"{text}\""),
@@ -313,7 +317,7 @@ impl<'a> Section<'a> {
     }
 }
 
-/// The value of an integer or a finite float; TOML's nan and inf are refused.
+/// The value of a decimal integer or a finite float; `None` for anything else, such as TOML's nan, inf or 0x1f.
 fn number(value: &DeValue) -> Option<f64> {
     let text = match value {
         DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str(),

@@ -2,7 +2,7 @@
 //!
 //! A parser names the token that it expected, in the terms of its grammar. The author needs to
 //! read the mistake itself: a missing value, a decimal comma, or a unit after a number. So this
-//! module checks the line for such mistakes. If it finds none, the parser's message is kept.
+//! module checks the line for such mistakes. If it finds no such mistake, the parser's message is kept.
 
 /// Makes the message for a mistake at byte `offset` of a text; `message` is the parser's own.
 pub fn explain_mistake(text: &str, offset: usize, message: &str) -> String {
@@ -40,7 +40,8 @@ fn heading(line: &str) -> Option<&str> {
     line.strip_prefix('[')?.strip_suffix(']').map(str::trim)
 }
 
-/// The message for a table or a key that occurs a second time in this line.
+/// The message for a table or a key that line `number`, counted from 0, repeats; `None` if the first occurrence is
+/// not found.
 fn find_duplicate(lines: &[&str], number: usize) -> Option<String> {
     let lines_before = lines.get(..number)?;
     let line = lines.get(number)?;
@@ -68,7 +69,7 @@ fn find_duplicate(lines: &[&str], number: usize) -> Option<String> {
     ))
 }
 
-/// The message for a mistake within one line.
+/// The message for a mistake within one line; `None` if no known mistake is found.
 fn find_mistake_in_line(line: &str) -> Option<String> {
     if line.starts_with('[') && !line.contains('=') && !line.ends_with(']') {
         return Some(format!("`{line}` lacks the ] behind the table's name"));

@@ -3,7 +3,8 @@
 use std::io::Read;
 use std::path::Path;
 
-/// The largest robot file that is read, bytes. A real one has some thousands; a device or a pipe might never end.
+/// The size of the largest robot file that is read, bytes. A real file has some thousand bytes; a device or a pipe
+/// might never end.
 pub const MAX_FILE_BYTES: u64 = 1 << 20;
 
 /// Reads a file of at most [`MAX_FILE_BYTES`] bytes.

@@ -11,8 +11,8 @@ use crate::measures::servo::LEGS;
 pub struct Bars {
     /// Name of the gait in robot.toml.
     pub name: String,
-    /// True if the legs swing one after the other and hold otherwise, with a common stance; false
-    /// if all legs always move.
+    /// True if the legs have a common stance, then swing one after the other and hold between;
+    /// false if all legs always move.
     pub held: bool,
     /// Time of a cycle at full speed, s.
     pub period: f64,
@@ -20,10 +20,10 @@ pub struct Bars {
     pub duty: f64,
     /// Largest sweep of a leg, deg.
     pub amplitude: f64,
-    /// Phase at which each stance begins, 0 to 1, in servo order: LF, RF, RH, LH. Only their
-    /// order counts if legs hold.
+    /// Phase at which each stance begins, 0 to 1, in servo order: LF, RF, RH, LH. If legs hold,
+    /// only the order of the phases counts: it is the order of the swings.
     pub start: [f64; 4],
-    /// Each leg's amplitude as a share of `amplitude`; negative if it moves opposite to the others.
+    /// Each leg's amplitude as a share of `amplitude`; negative if the leg moves opposite to the others.
     pub gain: [f64; 4],
 }
 
@@ -62,7 +62,7 @@ impl Bars {
         })
     }
 
-    /// Reverses the gait in time, so that it walks back if this one walks ahead.
+    /// Reverses the gait in time: a gait that walks ahead becomes one that walks back.
     ///
     /// A wave's stance and swing are each point-symmetric about their middle. So a wave played
     /// backwards is the negated wave, whose stance begins where the original one ends. A held gait

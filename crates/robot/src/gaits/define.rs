@@ -74,8 +74,8 @@ pub(crate) fn gaits(root: &Section, body: &Measures) -> Checked<Vec<Gait>> {
     }
 }
 
-/// Refuses two gaits or routines that the EEPROM cannot tell apart: it stores the one for `boot` as a number
-/// computed from its name.
+/// Refuses two gaits or routines that the EEPROM cannot tell apart: it stores the gait or routine of `boot` as a
+/// number computed from the name.
 pub(super) fn check_keys(section: &Section, names: &[&str]) -> Checked<()> {
     let mut names_by_key = HashMap::new();
     for name in names {
@@ -92,6 +92,8 @@ pub(super) fn check_keys(section: &Section, names: &[&str]) -> Checked<()> {
     Ok(())
 }
 
+/// Refuses a name that the console cannot accept as a command, or that it could not print. `kind` is "gait" or
+/// "routine", for the message.
 pub(super) fn check_name(name: &str, kind: &str) -> Result<(), String> {
     let letters = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
     let refused = |reason: String| Err(format!("is not a {kind} name: {reason}"));
@@ -116,13 +118,13 @@ pub(super) fn check_name(name: &str, kind: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// A reader of gaits by name. It reads each gait after those to which it refers.
+/// A reader of gaits by name. It reads each gait after the gaits to which that gait refers.
 struct Resolver<'a> {
     section: Section<'a>,
     names: Vec<&'a str>,
     body: &'a Measures,
     known: HashMap<&'a str, Gait>,
-    /// Names of the gaits that refer to the one being read, outermost first.
+    /// Names of the gaits that are being read: each refers to the next.
     chain: Vec<&'a str>,
 }
 
@@ -193,7 +195,7 @@ fn definition_key(table: &Section) -> Checked<&'static str> {
     }
 }
 
-/// Refuses keys that are meaningless together with `with`.
+/// Refuses keys outside `allowed`: they are meaningless together with `with`.
 fn allow_only(table: &Section, allowed: &[&str], with: &str) -> Checked<()> {
     match table
         .names()
@@ -285,6 +287,7 @@ fn read_path(name: &str, table: &Section, body: &Measures) -> Checked<Gait> {
     finish(name, table, body, strides)
 }
 
+/// Makes a gait of its strides, with the period and the gains of its table.
 fn finish(name: &str, table: &Section, body: &Measures, strides: [Stride; 4]) -> Checked<Gait> {
     let gait = Gait {
         name: name.to_string(),
@@ -320,7 +323,7 @@ fn read_gains(table: &Section) -> Checked<[f64; 4]> {
     )
 }
 
-/// Reads a number for each leg, in servo order.
+/// Reads a number for each leg, in servo order. Without a default, each leg must have its number.
 fn read_legs(
     section: &Section,
     default: Option<f64>,

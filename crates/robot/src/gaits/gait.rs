@@ -11,7 +11,7 @@ pub struct Stride {
     pub waveform: Waveform,
     /// Phase at which the waveform begins, 0 to 1.
     pub start: f64,
-    /// Sweep where the waveform is 1, deg; negative if the leg runs opposite to the others.
+    /// Sweep where the waveform is 1, deg; negative if the leg moves opposite to the others.
     pub amplitude: f64,
 }
 

@@ -21,7 +21,7 @@ pub struct Harmonic {
 pub struct Path {
     /// The mean point, mm.
     pub centre: [f64; 2],
-    /// Harmonics of the coordinate across.
+    /// Harmonics of the lateral coordinate.
     pub x: Vec<Harmonic>,
     /// Harmonics of the outward coordinate.
     pub y: Vec<Harmonic>,

@@ -1,12 +1,12 @@
-//! The sweeps of the two cranks of an end that lead its point along a path: the inverse of
-//! the five-bar.
+//! The sweeps of the two cranks of the head or the tail that move its end point along a path:
+//! the inverse kinematics of the five-bar.
 
 use lizard_kinematics::{End, Lizard, Vector, wrap};
 
 use crate::gaits::path::Path;
 use crate::measures::servo::FORWARD;
 
-/// The motion of one of the two servos that move an end's point along its path.
+/// The motion of one of the two servos that move the end point of head or tail along a path.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PathLeg {
     lizard: Lizard,
@@ -22,8 +22,8 @@ pub struct PathLeg {
 const CHECKED: usize = 4096;
 
 impl PathLeg {
-    /// Makes the legs of the two servos of an end, with their indices. `neutral`: all four
-    /// neutral angles, deg.
+    /// Makes the motions of the two servos of head or tail, each with its servo's index.
+    /// `neutral` has all four neutral angles, deg.
     ///
     /// # Errors
     /// Returns the message for a point of the path that is out of reach.
@@ -55,12 +55,11 @@ impl PathLeg {
         }))
     }
 
-    /// The leg's sweep from neutral at a phase of 0 to 1, deg, foot forward
-    /// positive.
+    /// The servo's sweep from neutral at a phase of 0 to 1, deg, positive if the foot is forward.
     pub fn sweep(&self, phase: f64) -> f64 {
-        // No point is out of reach: `pair` has refused such paths. Type-1 margins are
-        // zero at the edge of reach, and the check of every sample keeps those of the
-        // path far from zero.
+        // `pair` has checked only some points of the path. But none between them is out of reach
+        // either: type-1 margins are zero at the edge of reach, and the check of every sample
+        // keeps the path's margins far from zero.
         let angles = self
             .lizard
             .point_angles(self.end, self.path.at(phase))

@@ -34,7 +34,8 @@ impl Routine {
         &self.name
     }
 
-    /// The records in the section: one for each step, after one for the input that ends it, if any.
+    /// The routine's records in the section: one for each step. If an input ends the step, a record of that input
+    /// precedes it.
     pub fn steps(&self) -> &[Step] {
         &self.steps
     }
@@ -45,18 +46,18 @@ impl Routine {
         self.steps.iter().filter(is_step).count()
     }
 
-    /// True if a contact may end one of its steps.
+    /// True if an input may end one of the routine's steps.
     pub fn has_inputs(&self) -> bool {
         self.count() < self.steps.len()
     }
 
-    /// The number of rounds; `None` if it repeats for ever.
+    /// The number of rounds; `None` if the routine repeats for ever.
     pub fn rounds(&self) -> Option<u16> {
         (self.rounds > 0).then_some(self.rounds)
     }
 
-    /// The routine's record in the section; `first` is the index of its first step record among those of all
-    /// routines.
+    /// The routine's record in the section; `first` is the index of its first step record among the step records of
+    /// all routines.
     pub(crate) fn record(&self, first: usize, name_start: usize) -> Record {
         let mut record = Record {
             name_start: name_start as u16,
@@ -181,7 +182,7 @@ fn parse_records(
     }
 }
 
-/// The problem of a step with an input that robot.toml does not have.
+/// The message about a step with an input that robot.toml does not have.
 fn no_input(name: &str) -> String {
     if INPUTS.contains(&name) {
         return format!(

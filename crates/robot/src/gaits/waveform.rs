@@ -1,6 +1,6 @@
 //! The shape of one leg's sweep over a cycle. Feet are never lifted: a pad drags, and the robot walks because three
 //! feet hold while one returns. So a waveform is a slow stance, in which the foot moves back, and a fast swing
-//! forward. If the swing is long enough, the two join without a jump in speed.
+//! forward. If the swing is long enough, stance and swing join without a jump in speed.
 //!
 //! A waveform maps the phase (one cycle = 1) to -1..1, foot forward = 1.
 
@@ -14,14 +14,14 @@ const MOVE: f64 = 0.2;
 pub enum Waveform {
     /// A leg that does not move.
     Still,
-    /// Linear stance over `duty` of the cycle, then a cubic Hermite swing that
-    /// meets the stance with equal speed at both ends; its peak is 1.
+    /// A linear stance over `duty` of the cycle, then a cubic Hermite swing that
+    /// has the stance's speed where the two join. The swing's peak is 1.
     Wave {
         /// The duty factor: the stance's share of the cycle, 0 to 1.
         duty: f64,
     },
-    /// A smoothstep back in the first fifth, the stance common to all legs. Then a smoothstep forward, the swing,
-    /// in fifth number `turn + 1`, counted from 0. Otherwise it holds.
+    /// A smoothstep back in the first fifth of the cycle, the stance common to all legs. Then a smoothstep forward,
+    /// the swing, in fifth number `turn + 1`, counted from 0. In the other fifths the leg holds.
     Held {
         /// Index of this leg's swing among the four, 0 to 3.
         turn: usize,
@@ -44,9 +44,10 @@ impl Waveform {
     }
 }
 
-/// Stance 1 - 2u/beta, then with t = (u - beta)/(1 - beta) and the end slope m = -2 (1 - beta)/beta the Hermite
-/// cubic from -1 to 1, all divided by the cubic's peak. To keep its speed, the foot overshoots a little before it
-/// turns (by 1.4 % at beta = 0.75), and the amplitude includes the overshoot.
+/// The value of a wave with duty factor beta at phase u. The stance is 1 - 2u/beta; then, with
+/// t = (u - beta)/(1 - beta) and the slope m = -2 (1 - beta)/beta at both of its ends, the swing is the Hermite
+/// cubic from -1 to 1; all is divided by the cubic's peak. To keep its speed, the foot overshoots a little before it
+/// reverses (by 1.4 % at beta = 0.75), and the amplitude includes the overshoot.
 fn wave(u: f64, duty: f64) -> f64 {
     let m = -2.0 * (1.0 - duty) / duty;
     let shape = if u < duty {
@@ -65,6 +66,7 @@ fn hermite(t: f64, m: f64) -> f64 {
     2.0 * smoothstep(t) - 1.0 + m * t * (1.0 - t) * (1.0 - 2.0 * t)
 }
 
+/// The value of a held waveform at phase u.
 fn held(u: f64, turn: usize) -> f64 {
     let start = MOVE * (turn + 1) as f64;
     1.0 - 2.0 * smoothstep(u / MOVE) + 2.0 * smoothstep((u - start) / MOVE)
@@ -78,8 +80,8 @@ fn smoothstep(t: f64) -> f64 {
 
 /// Reduces a waveform to one that has a table: `at(u) = sign * base.at(u - shift)`. Returns base, shift and sign.
 ///
-/// The held waveforms of the first and the last swing are each other's negative, shifted, and so are the two in
-/// between. So two tables are enough for all four.
+/// Of the held waveforms, those of the first and the last swing are each other's negative, shifted, and so are those
+/// of the second and the third swing. So two tables are enough for all four.
 pub(crate) fn canonical(waveform: &Waveform) -> (Waveform, f64, f64) {
     match waveform {
         Waveform::Held { turn } if *turn >= 2 => (
@@ -95,6 +97,7 @@ pub(crate) fn canonical(waveform: &Waveform) -> (Waveform, f64, f64) {
 mod tests {
     use super::*;
 
+    /// All held waveforms, and waves of several duty factors.
     fn all() -> Vec<Waveform> {
         let mut all: Vec<_> = (0..4).map(|turn| Waveform::Held { turn }).collect();
         all.extend([0.5, 0.75, 0.875].map(|duty| Waveform::Wave { duty }));

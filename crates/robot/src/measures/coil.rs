@@ -31,8 +31,8 @@ impl Coil {
         self.outer - self.wire
     }
 
-    /// Number of active coils. The wound body has the length without the two hooks, each of
-    /// which is an inner diameter long.
+    /// Number of active coils. The wound body is as long as the spring without its two hooks;
+    /// each hook is an inner diameter long.
     pub fn coils(&self) -> f64 {
         let inner = self.outer - 2.0 * self.wire;
         (self.length - 2.0 * inner) / self.wire - 1.0
@@ -81,7 +81,7 @@ mod tests {
         };
         assert!((coil.coils() - 20.0).abs() < 1e-9);
         assert!((coil.rate() - 0.495_625).abs() < 1e-6);
-        // C = 10: 231 / e^1.05 = 80.8 MPa, and pi / 80 of it.
+        // C = 10: the stress is 231 / e^1.05 = 80.8 MPa, and the force pi d^3 / (8 D) = pi / 80 times as many N.
         assert!(
             (coil.initial_tension() - 3.174).abs() < 0.01,
             "{}",

@@ -5,7 +5,7 @@ use lizard_kinematics::{Check, End, Part, Side};
 /// Names of the legs in servo order.
 const LEGS: [&str; 4] = ["left front", "right front", "right hind", "left hind"];
 
-/// Says what would happen to the robot in a pose that breaks a condition.
+/// Returns the consequence for the robot of a pose that breaks a condition.
 pub(crate) fn consequence(what: Check) -> String {
     let at = |all: &[Check]| all.iter().position(|one| *one == what);
     if let Some(end) = at(&Check::TYPE2) {
@@ -30,7 +30,7 @@ pub(crate) fn consequence(what: Check) -> String {
     format!("the cranks of the {end} would cross")
 }
 
-/// Says what is wrong with a part of the linkage whose loop does not close.
+/// Returns the consequence for the robot of a pose in which the loop of a part of the linkage does not close.
 pub(crate) fn no_loop(part: Part) -> String {
     match part {
         Part::End(end) => format!("the links of the {end} would not reach each other"),

@@ -5,7 +5,7 @@ use lizard_contact::{Body, DEFAULT_FRICTION, Drive, Feet, Ground, Stance};
 use crate::file::{Checked, Section};
 use crate::measures::servo::LEGS;
 
-/// Reads `[ground]`, `[body]` and `[feet]` of a robot whose feet and legs are known.
+/// Reads `[ground]`, `[body]` and `[feet]`; `feet` and `drive` are given by other tables.
 pub(crate) fn read(root: &Section, feet: Feet, drive: Drive) -> Checked<Ground> {
     const RATIO: &str = "friction_back_over_forward";
     let section = root.section("ground", &[RATIO, "friction"])?;
@@ -19,7 +19,8 @@ pub(crate) fn read(root: &Section, feet: Feet, drive: Drive) -> Checked<Ground> 
     })
 }
 
-/// Reads the mass and the mass centre. Refuses a mass centre with which a foot is in the air at neutral.
+/// Reads the mass and the mass centre; keys that are left out have the default values. Refuses a mass centre with
+/// which a foot is in the air at neutral.
 fn read_body(root: &Section, feet: &Feet) -> Checked<Body> {
     if !root.has("body") {
         return Ok(Body::DEFAULT);

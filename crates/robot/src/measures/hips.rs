@@ -1,9 +1,9 @@
 //! The hips: the centres of the circles on which the feet move.
 //!
 //! A foot is fixed to its coupler, which moves without turning. So the foot's circle is
-//! that of the crank's joint, shifted: the offset from the driven pivot to the hip equals
-//! the one from that joint to the foot. robot.toml gives at most two of pivot, foot and
-//! hip for each direction; the third follows.
+//! the circle of the crank's joint, shifted: the offset from the driven pivot to the hip
+//! equals the offset from that joint to the foot. In each direction, two of pivot, foot and
+//! hip determine the third. robot.toml may state the third only if it agrees.
 
 use lizard_contact::Feet;
 use lizard_kinematics::{End, Lizard, Vector};
@@ -12,11 +12,12 @@ use crate::file::{Checked, Fault, Section};
 use crate::measures::legs::outward;
 use crate::measures::parts::Parts;
 
-/// The default place of the foot on its coupler, mm, as in [`Parts::foot`]: with the pivots of
-/// the paper's robot the hips are 55 mm ahead and 35 mm to the side.
+/// The default position of the foot on its coupler, mm, as in [`Parts::foot`]: with the pivots of
+/// the paper's robot, the hips are 55 mm ahead and 35 mm to the side.
 const FOOT: [f64; 2] = [-3.5, 2.5];
-/// Range of the hips ahead and to the side, mm.
+/// Range of the hips' distance ahead, mm.
 const AHEAD: (f64, f64) = (1.0, 500.0);
+/// Range of the hips' distance to the side, mm.
 const SIDE: (f64, f64) = (0.0, 500.0);
 /// Largest difference of two lengths that count as equal, mm.
 const SAME_LENGTH_MM: f64 = 0.005;
@@ -24,7 +25,7 @@ const SAME_LENGTH_MM: f64 = 0.005;
 const AHEAD_KEY: &str = "hip_forward";
 const SIDE_KEY: &str = "hip_side";
 
-/// The hips as `[leg]` gives them, mm; `None` if they follow from pivot and foot.
+/// The distances of the hips as `[leg]` gives them, mm; `None` if a distance follows from pivot and foot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Hips {
     ahead: Option<f64>,
@@ -44,7 +45,7 @@ impl Hips {
         })
     }
 
-    /// Places the feet, and refuses hips that contradict pivot and foot.
+    /// Places the feet. Refuses hips that contradict pivot and foot, or that are out of range.
     pub fn feet(&self, lizard: &Lizard, parts: &Parts, mount: f64) -> Checked<Feet> {
         // Left and right are mirror images; head and tail may have different widths.
         let shafts = lizard.shafts();
@@ -93,6 +94,7 @@ mod tests {
         with("paper", &[(LEG, &leg)]).map_err(|error| error.to_string())
     }
 
+    /// The distances of the paper's hips with these lines: ahead, and to the side at head and tail.
     fn hips(hips: &str, parts: &str) -> (f64, [f64; 2]) {
         let feet = robot(hips, parts).expect("a robot").ground().feet;
         (feet.hip_forward, feet.hip_side)

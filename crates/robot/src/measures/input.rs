@@ -12,9 +12,9 @@ pub const NAMES: [&str; 2] = ["button", "nose"];
 /// Arduino pin numbers of the inputs that a robot has.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Inputs {
-    /// A push button, if there is one.
+    /// The pin of a push button; `None` if the robot has no button.
     pub button: Option<u8>,
-    /// A switch that closes in front of an obstacle, if there is one.
+    /// The pin of a switch that closes in front of an obstacle; `None` if the robot has no such switch.
     pub nose: Option<u8>,
 }
 
@@ -61,7 +61,7 @@ impl Inputs {
         pins.filter_map(|(name, pin)| Some((name, pin?)))
     }
 
-    /// The input of this name in the core's representation, if the robot has it.
+    /// The input of this name in the core's representation; `None` if the robot does not have it.
     pub(crate) fn named(&self, name: &str) -> Option<Input> {
         match name {
             "button" => self.button.map(Input::button),

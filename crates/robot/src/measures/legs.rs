@@ -4,8 +4,8 @@
 //! The paper's figures do not show the legs' pivots. Only the circle of the foot matters for
 //! walking. A parallelogram moves its coupler without turning it. So the two pivots may be
 //! moved together to a place with room, if the foot is moved on the coupler by the same
-//! distance in the opposite direction. The driven pivot lies away from the servo, whose
-//! link would sweep over it. The strut joins the servo's link to the leg; it is the coupler
+//! distance in the opposite direction. The driven pivot lies outside the area that the
+//! servo's link sweeps. The strut joins the servo's link to the leg; it is the coupler
 //! of a second parallelogram: shaft, driven pivot and two equal anchor arms.
 //!
 //! A hip is the centre of a foot's circle. At neutral the foot is straight beside it,
@@ -28,7 +28,7 @@ pub struct LegPlan {
     pub idle: Vector,
     /// Unit vector from the driven to the follower's pivot: the coupler's direction in every pose.
     pub along: Vector,
-    /// Angle from the servo's direction to that of the leg's crank, deg.
+    /// Angle from the servo's crank to the leg's crank while the leg does not lag, deg.
     pub set: f64,
     /// The crank's joint with the coupler, in the crank's frame, mm: x points as the
     /// servo's crank does while the leg does not lag.
@@ -40,7 +40,7 @@ pub struct LegPlan {
     pub strut: Vector,
     /// Length of the strut from anchor to anchor while the leg does not lag, mm.
     pub strut_length: f64,
-    /// The strut's anchor, mm: the same in the frames of the servo's link and of the leg.
+    /// The strut's anchor, mm. It has the same coordinates in the frame of the servo's link and in the leg's.
     pub anchor: Vector,
 }
 
@@ -72,8 +72,8 @@ impl LegPlan {
         let shaft = lizard.shafts()[servo];
         let driven = shaft + driven(servo, parts);
         let set = reach.angle() - neutral;
-        // The angle between ground link and crank is the servo's. Of the two possible ends of
-        // the link, the one away from the servo is taken.
+        // The angle between ground link and crank equals the servo's angle. The follower's pivot
+        // may be at either end of the ground link; the end that is farther from the servo is used.
         let link = Vector::direction(set) * lizard.leg.ground;
         let [idle, other] = [driven + link, driven - link];
         let idle = match (idle - shaft).square() > (other - shaft).square() {
@@ -98,8 +98,8 @@ impl LegPlan {
         }
     }
 
-    /// Places the leg for an angle of the servo and an angle of the leg's crank, both in deg,
-    /// chassis frame. They differ by the lag.
+    /// Places the leg for the servo's angle `servo` and the angle `leg` that the leg follows, both
+    /// in deg, chassis frame. The angles differ by the leg's lag.
     pub fn at(&self, servo: f64, leg: f64) -> LegPlace {
         let turned = |angle: f64, v: Vector| {
             let x = Vector::direction(angle);
@@ -124,7 +124,7 @@ fn driven(servo: usize, parts: &Parts) -> Vector {
     outward(servo, parts.pivot)
 }
 
-/// Converts distances outward and towards the middle, at a servo, to the chassis frame.
+/// Converts an offset from a servo, given as distances outward and towards the robot's middle, to the chassis frame.
 pub(crate) fn outward(servo: usize, [outward, inward]: [f64; 2]) -> Vector {
     Vector::new(-LEFT[servo] * outward, -FRONT[servo] * inward)
 }
@@ -177,7 +177,7 @@ mod tests {
         let near = |a: Vector, x: f64, y: f64| (a - Vector::new(x, y)).length() < 1e-9;
         let right = robot("paper").legs()[1];
         assert!(near(right.driven, 10.0 + 28.5, 67.5 - 10.0), "{right:?}");
-        // 50 mm at 41.41 deg inward of straight to the side: l3 over l1 and l0.
+        // The ground link: 50 mm long, and turned by 41.41 deg from straight to the side toward the middle.
         let (across, back) = (37.5, 50.0 * 0.4375f64.sqrt());
         assert!((right.idle - right.driven - Vector::new(across, -back)).length() < 1e-4);
         let left = robot("paper").legs()[0];

@@ -110,8 +110,8 @@ impl Measures {
         self.servos.map(|servo| servo.neutral)
     }
 
-    /// Refuses lengths that the firmware's 16-bit integers cannot resolve: couplers that are short compared with
-    /// the rest of their loop, or a stroke at which the slider has no length.
+    /// Refuses couplers that are too short, compared with the rest of their loop, for the firmware's 16-bit integers,
+    /// and strokes at which a slider would have no length.
     fn check_lengths(&self) -> Checked<()> {
         for (end, names) in [
             (End::Head, ["links.l2", "links.l3"]),
@@ -183,7 +183,7 @@ fn read_links(root: &Section) -> Checked<Links> {
     Ok(l)
 }
 
-/// Reads the legs: their links, their hips, and their outward sweep at neutral, deg.
+/// Reads the legs: their links, their hips, and the sweep angle `mount` of the feet at neutral, deg.
 fn read_leg(root: &Section) -> Checked<(Leg, Hips, f64)> {
     let keys = [
         "ground",
@@ -225,7 +225,7 @@ fn read_leg(root: &Section) -> Checked<(Leg, Hips, f64)> {
     Ok((leg, hips, mount))
 }
 
-/// Refuses two lengths that must be equal for the mechanism.
+/// Refuses the `value` of a key that differs from the value of the key `other`.
 fn equal(key: &str, value: f64, other: &str, other_value: f64, reason: &str) -> Checked<()> {
     if value == other_value {
         return Ok(());

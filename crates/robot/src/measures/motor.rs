@@ -18,7 +18,7 @@ const N_MM: f64 = 10.0 * GRAVITY;
 pub struct ServoType {
     /// Name of the type on which robot.toml is based.
     pub model: &'static str,
-    /// Source of its figures.
+    /// Source of the type's figures.
     pub source: &'static str,
     /// Stall torque, kg cm.
     pub stall_kg_cm: f64,
@@ -107,7 +107,7 @@ impl ServoType {
         })
     }
 
-    /// The motor at a supply voltage in V, with a gain in us per degree.
+    /// The servo's motor at a supply voltage in V, if `us_per_degree` of the pulse turn the servo by one degree.
     pub fn motor(&self, volts: f64, us_per_degree: f64) -> Motor {
         let motor = Motor {
             stall: self.stall_kg_cm * N_MM,
@@ -136,7 +136,7 @@ fn read_model(section: &Section) -> Checked<ServoType> {
     })
 }
 
-/// Reads `[joints]`; every key is optional.
+/// Reads `[joints]`; every key is optional. The arms of the sliders come from the links and the servos.
 pub(crate) fn joints(root: &Section, lizard: &Lizard, servos: &[Servo; 4]) -> Checked<Joints> {
     let links = &lizard.links;
     let lengths = [links.l14, links.l19, links.l16, links.l11];

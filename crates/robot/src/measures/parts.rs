@@ -2,8 +2,8 @@
 //!
 //! The links' lengths place the joints. This table has the width and the thickness of the
 //! parts that hold the joints, and the measures of parts from a shop: servos, screws, springs, a
-//! board, a battery. None of it moves a joint, so the firmware does not depend on it. The
-//! places of the feet depend on it, see `hips.rs`. Every key is optional.
+//! board, a battery. No value of this table moves a joint, so the firmware does not depend on
+//! it. The positions of the feet depend on it (`hips.rs`). Every key is optional.
 
 use crate::file::{Checked, Section};
 use crate::measures::coil::Coil;
@@ -28,9 +28,9 @@ pub struct Parts {
     /// The leg's driven pivot on the chassis, from its servo's shaft: outward and towards the
     /// middle. The follower's pivot is a ground link further out.
     pub pivot: [f64; 2],
-    /// The foot's place on its coupler, from the crank's joint: outward and towards the middle.
+    /// The foot's position on its coupler, from the crank's joint: outward and towards the middle.
     /// The hip, the centre of the foot's circle, has the same offset from the driven pivot. `None`
-    /// if it is left out; [`crate::LegPlan`] then has the computed place.
+    /// if the key is left out; [`crate::LegPlan`] then has the computed position.
     pub foot: Option<[f64; 2]>,
     /// The strut's anchor on the servo's link and, in parallel, on the leg: distance from the
     /// shaft, and angle (deg) from the crank, away from the arm.
@@ -45,8 +45,8 @@ pub struct Parts {
     pub screw: Screw,
     /// The pads on which the robot stands.
     pub pad: Pad,
-    /// Width of a strip that slides more easily one way, such as climbing skin, along each pad from
-    /// head to tail; 0 leaves it out.
+    /// Width of a strip along each pad from head to tail that slides more easily in one direction,
+    /// such as climbing skin; 0 leaves the strip out.
     pub strip: f64,
     /// The legs' springs, which are mounted in their struts.
     pub spring: Coil,
@@ -55,7 +55,7 @@ pub struct Parts {
     /// Length of the two links behind the tail's point, which make the robot look like a
     /// lizard; 0 leaves them out.
     pub tail: f64,
-    /// Length of the head's plate ahead of the head's point; 0 leaves it out.
+    /// Length of the head's plate ahead of the head's point; 0 leaves the plate out.
     pub head: f64,
 }
 
@@ -152,8 +152,8 @@ measures! {
 }
 
 impl Pad {
-    /// Height of the dome, mm, which is that of the highest edge that it can slide up; `None` for
-    /// a pad that is wider than the sphere.
+    /// Height of the dome, mm, which is also the height of the highest edge that the pad can slide
+    /// up; `None` for a pad that is wider than the sphere.
     pub fn dome(&self) -> Option<f64> {
         let half = self.width / 2.0;
         (half <= self.radius)
@@ -225,7 +225,7 @@ fn read_coil(parts: &Section, default: Coil) -> Checked<Coil> {
     })
 }
 
-/// The table that replaces the former key `[parts] strut`, for the message to its user.
+/// The table that replaces the former key `[parts] strut`, for the message about that key.
 const STRUT: &str = "[leg.drive] with kind = \"strut\" or \"rigid\"";
 
 impl Parts {

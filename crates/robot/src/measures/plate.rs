@@ -19,7 +19,7 @@ pub struct Plate {
     pub corner: f64,
     /// End points of each leg's arms: one between the pivots, and one from each pivot to the plate.
     pub arms: [[[Vector; 2]; 3]; 4],
-    /// Half the width of an arm; its ends are round.
+    /// Half the width of an arm; both ends of an arm are round.
     pub arm: f64,
     /// The centres of the servos' cases.
     pub cases: [Vector; 4],

@@ -16,7 +16,7 @@ pub(crate) fn steps_per_mm(scale: Scale) -> f64 {
     f64::from(1u32 << scale.bits)
 }
 
-/// Finds the scale of the five-bar of an end.
+/// Finds the finest scale for the five-bar of head or tail.
 pub(crate) fn of_loop(bars: &FiveBar) -> Scale {
     let all = bars.base + bars.crank_left + bars.crank_right;
     finest(&[
@@ -26,7 +26,7 @@ pub(crate) fn of_loop(bars: &FiveBar) -> Scale {
     ])
 }
 
-/// Finds the scale of a side whose slider may extend by `stroke_max` mm from nominal.
+/// Finds the finest scale for a side whose slider may extend by `stroke_max` mm from nominal.
 pub(crate) fn of_side(side: &Slider, stroke_max: f64) -> Scale {
     let arms = side.front + side.rear + side.offset.abs();
     finest(&[
@@ -63,6 +63,7 @@ mod tests {
             .all(|mm| steps(mm) < 127.0 * 256.0)
     }
 
+    /// True if a side fits at this number of bits, by the core's bounds of 127 and 255 times 256 steps.
     fn side_fits(side: &Slider, stroke_max: f64, bits: u16) -> bool {
         let steps = |mm: f64| mm * f64::from(1u32 << bits);
         let arms = side.front + side.rear + side.offset.abs();
@@ -100,7 +101,8 @@ mod tests {
 
     #[test]
     fn a_length_that_just_does_not_fit_halves_the_step_less() {
-        // 127 mm in total: exactly the bound at 256 steps per mm, and it must be below the bound.
+        // With a base of 47 mm the sum is 127 mm: exactly the bound at 256 steps per mm, so a coarser scale is
+        // needed.
         let bars = |base| FiveBar {
             base,
             crank_left: 40.0,

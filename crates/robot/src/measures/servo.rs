@@ -12,7 +12,7 @@ pub const NAMES: [&str; 4] = ["A1", "A2", "A3", "A4"];
 /// The leg that each servo carries: left or right, front (F) or hind (H).
 pub const LEGS: [&str; 4] = ["LF", "RF", "RH", "LH"];
 
-/// The side of a servo's link where the slider's arm is: 1 if counter-clockwise from its crank, else -1.
+/// The direction from a servo's crank to its link's arm for the slider: 1 for counter-clockwise, -1 for clockwise.
 pub const ARM_SIDE: [f64; 4] = {
     let (left, right) = (Side::Left.sign(), Side::Right.sign());
     [left, right, -right, -left]
@@ -20,7 +20,7 @@ pub const ARM_SIDE: [f64; 4] = {
 
 /// Pulse widths that a hobby servo tolerates, us; they fit into a slot of 4 ms.
 const WIDTHS: (f64, f64) = (500.0, 2500.0);
-/// Gains of a servo, us per degree; the firmware's i16 cannot hold a larger one.
+/// Range of a servo's gain without its sign, us per degree; the firmware's i16 cannot hold a larger gain.
 const GAINS: (f64, f64) = (1.0, 22.0);
 
 /// The servo on the other side of the robot, for each servo.
@@ -69,7 +69,7 @@ impl Servo {
     }
 }
 
-/// Rounding error allowed at the end of a travel, deg.
+/// Rounding error allowed at the limits of a travel, deg.
 const ROUNDING: f64 = 1e-9;
 /// The largest sweep that the core can represent, deg.
 const HALF_TURN: f64 = i16::MAX as f64 / STEPS_PER_DEGREE;
@@ -83,8 +83,8 @@ pub struct SpeedLimits {
     pub gait_slew: f64,
 }
 
-/// Converts the name of a pin on the board to its Arduino number: D2 to D12, A0 to A5
-/// (14 to 19).
+/// Converts the name of a pin on the board to the pin's Arduino number: D2 to D12, A0 to A5
+/// (14 to 19); `None` for any other name.
 pub(crate) fn pin(name: &str) -> Option<u8> {
     let (letter, number) = name.split_at_checked(1)?;
     // "+5" and "05" would parse, but are not names of pins.
@@ -99,7 +99,7 @@ pub(crate) fn pin(name: &str) -> Option<u8> {
     }
 }
 
-/// Reads the key `pin`, whose value must be a name that [`pin`] accepts.
+/// Reads the key `pin`, whose value must be a name that the function [`pin`] accepts.
 pub(crate) fn read_pin(section: &Section) -> Checked<u8> {
     let text = section.text("pin")?;
     pin(text).ok_or_else(|| {

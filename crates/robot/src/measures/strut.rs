@@ -1,4 +1,4 @@
-//! The slotted strut between a servo's link and its leg: its length, and the pull of the spring in it.
+//! The slotted strut between a servo's link and its leg: the strut's length, and the force of the spring in it.
 
 use lizard_contact::{SLOT, Strut};
 

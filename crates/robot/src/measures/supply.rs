@@ -8,6 +8,7 @@ use crate::measures::servo::{NAMES, Servo, pin};
 
 /// The nominal voltage reference of an ATmega328P, V: data sheet, section 29.8.
 const REFERENCE: f64 = 1.1;
+/// Range of the voltage reference, V.
 const REFERENCES: (f64, f64) = (1.0, 1.2);
 
 /// Range of the thresholds of the board's supply, V: the brown-out detector resets the chip at 2.7, and the chip
@@ -18,9 +19,9 @@ const BOARD: (f64, f64) = (2.7, 5.5);
 /// be measured as 4.3 V.
 const DEFAULTS: [f64; 3] = [4.2, 4.0, 3.7];
 
-/// Rating of the fuse, A. It carries what the converter draws from an empty battery for 3 A at 5 V, from 6.4 V with
-/// a loss of 15 %: 2.8 A. It must blow before the switch is overloaded. Half of the switch's rating counts, because
-/// the rating is for alternating current, and direct current is harder to interrupt.
+/// Rating of the fuse, A. It carries 2.8 A: the converter draws this current from an empty battery of 6.4 V for 3 A
+/// at 5 V, with a loss of 15 %. The fuse must blow before the switch is overloaded. Half of the switch's rating
+/// counts, because the rating is for alternating current, and direct current is harder to interrupt.
 pub const FUSE: u32 = 3;
 /// The smallest rating of the switch, A. See [`FUSE`].
 pub const SWITCH: u32 = 6;
@@ -39,8 +40,9 @@ pub struct Supplies {
     pub board: [f64; 3],
     /// The servos' rail; `None` if it is not measured.
     pub rail: Option<Rail>,
-    /// Percentage of their own pace to which gaits are limited below the first threshold. It follows from the
-    /// servos if their rail is measured; the board's supply says nothing about the servos' torque-speed line.
+    /// Percentage of their own pace to which gaits are limited below the first threshold. The percentage follows
+    /// from the servos if their rail is measured; the board's supply says nothing about the servos' torque-speed
+    /// line.
     pub slow_pace: u8,
 }
 
@@ -49,7 +51,7 @@ pub struct Supplies {
 pub struct Rail {
     /// Arduino number of the pin, 14 to 19.
     pub pin: u8,
-    /// Ratio of the rail's voltage to the pin's voltage.
+    /// The rail's voltage divided by the pin's voltage.
     pub ratio: f64,
     /// Thresholds of the rail, V.
     pub thresholds: [f64; 3],
@@ -61,14 +63,15 @@ pub struct Rail {
 /// threshold, V: more than the 0.15 V by which a supply must recover before the robot is fast again.
 const MIN_THRESHOLD_GAP: f64 = 0.25;
 
-/// The pace at a low supply if the servos' line is not known there, percent.
+/// The pace at a low supply if the servos' rail, and so their torque-speed line, is not measured, percent.
 const DEFAULT_PACE: u8 = 50;
 /// The slowest pace that the command `speed` accepts, percent.
 const SLOWEST_PACE: f64 = 10.0;
 
 impl Rail {
     /// Sets the first threshold, if robot.toml leaves it to the servos: the voltage below which the hardest gait
-    /// would use more than `share` of the servos' torque-speed line. `line` is the share that it uses at `volts`.
+    /// would use more than `share` of the servos' torque-speed line. `line` is the share that this gait uses at
+    /// `volts`.
     pub(crate) fn slow_down(&mut self, line: f64, share: f64, volts: f64) {
         let [slow, stop, _] = &mut self.thresholds;
         let min = *stop + MIN_THRESHOLD_GAP;
@@ -81,7 +84,7 @@ impl Rail {
 }
 
 impl Supplies {
-    /// Limits the pace of gaits at a low supply to a share of their own.
+    /// Limits the pace of gaits at a low supply to `pace`, a share of their own pace.
     pub(crate) fn limit_pace(&mut self, pace: f64) {
         self.slow_pace = (100.0 * pace).floor().max(SLOWEST_PACE) as u8;
     }
@@ -134,8 +137,9 @@ const NO_RAIL: Thresholds = Thresholds {
     rest: 0,
 };
 
-/// The voltage of a healthy servo rail at its divided pin, mV, for simulations, since a rail of 0 V ends the
-/// pulses. The rail is at 5 V, or well above its thresholds if these are higher. `None` if no rail is measured.
+/// The voltage at the pin that measures a healthy servo rail, mV; `None` if no rail is measured. Simulations need it,
+/// since a rail of 0 V ends the pulses. The rail is taken to be at 5 V, or at 0.5 V above its first threshold if that
+/// is more.
 pub fn healthy_rail_mv(supplies: &CoreSupplies) -> Option<f64> {
     const RESERVE: f64 = 500.0;
     const BOARD: f64 = 5_000.0;
@@ -291,8 +295,9 @@ mod tests {
         assert!((6.65..7.75).contains(&two), "{two}");
     }
 
-    /// The slow pace of the paper's robot on another floor with other thresholds, and the pace that a search among
-    /// its efforts finds.
+    /// The slow pace, percent, of the paper's robot with changed servos, thresholds and friction, and the pace that a
+    /// search finds independently: the highest percentage at which no gait exceeds the allowed share of the
+    /// torque-speed line.
     fn paces(servo: &str, rail: &str, friction: f64) -> [u8; 2] {
         let tables = format!(
             "[supply.rail]\npin = \"A3\"\nratio = 2.0\n{rail}\n{BEFORE}\nfriction = {friction}"
@@ -325,7 +330,7 @@ mod tests {
         let [given, searched] = paces("", "slow = 4.7\nstop = 4.5", 0.9);
         assert_eq!(given, searched);
         assert!(given > rough, "{given} {rough}");
-        // Either no pace is slow enough, or none is too fast.
+        // In one robot no pace is slow enough, in the other no pace is too fast.
         assert_eq!(
             paces("model = \"copy\"", "stop = 3.0\nrest = 2.8", 1.2),
             [10, 10]

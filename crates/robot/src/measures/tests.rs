@@ -2,13 +2,14 @@
 
 use crate::testing::with;
 
+/// The message with which the unequal robot is refused after changes of its robot.toml.
 fn refused(changes: &[(&str, &str)]) -> String {
     with("unequal", changes).expect_err("refused").to_string()
 }
 
 #[test]
 fn each_coupler_must_be_long_enough_for_its_own_loop() {
-    // At these lengths both ends are counted in steps of 1/256 mm.
+    // With these lengths, the scales of head and tail are 256 steps per mm.
     for (from, to) in [
         ("l2 = 55.0", "l2 = 15.9"),
         ("l3 = 48.0", "l3 = 15.9"),
@@ -23,7 +24,7 @@ fn each_coupler_must_be_long_enough_for_its_own_loop() {
             "{refused}"
         );
     }
-    // A longer base halves the steps per mm, only for its own end.
+    // A longer base of the tail halves the steps per mm of the tail only.
     let long = refused(&[("l5 = 30.0", "l5 = 90.0"), ("l7 = 55.0", "l7 = 31.0")]);
     assert!(
         long.contains("links.l7 is 31 mm") && long.contains("at least 32.1 mm"),

@@ -1,5 +1,5 @@
-//! Sensitivity analysis of the prediction: varies each assumption over its plausible range and lists those that
-//! change a gait's movement by 10 % or more.
+//! Sensitivity analysis of the prediction: varies each assumption over its plausible range and lists the assumptions
+//! that change a gait's movement by 10 % or more.
 
 use std::fmt;
 
@@ -13,11 +13,10 @@ use crate::robot::Robot;
 const MIN_CHANGE_PERCENT: f64 = 10.0;
 /// Smallest noticeable movement in a cycle: mm ahead, deg of turn.
 const MIN_MOVEMENT: (f64, f64) = (1.0, 0.5);
-/// Tolerance within which two movements count as equal, as those of a gait and its mirror image or reverse do: mm,
-/// deg.
+/// Tolerance within which the movements of a gait and of its mirror image or reverse count as equal: mm, deg.
 const MIRROR_TOLERANCE: f64 = 0.02;
 
-/// The note about assumptions that no input of the model varies.
+/// The note about assumptions for which the model has no input.
 const BEYOND_THE_MODEL: &str = "\
 The model cannot vary the floor's edges and slopes, a lost pad, servos that drive in bursts, a mass centre farther off, \
 or the mass of the limbs.\n\
@@ -62,13 +61,13 @@ struct Assumption {
     variation: Variation,
 }
 
-/// The way in which an assumption varies the inputs.
+/// The change of the inputs by which an assumption is varied.
 enum Variation {
     /// One input is set to each value.
     Value(fn(&mut Inputs) -> &mut f64),
-    /// A change that is off (0) in the prediction and on (1) in the comparison.
+    /// A change that is not made for the value 0, as in the prediction, and made for 1.
     Switch(fn(&mut Inputs)),
-    /// An input that has an effect only after another change.
+    /// One input is set to each value after another change, without which the input has no effect.
     ValueAfterChange(fn(&mut Inputs), fn(&mut Inputs) -> &mut f64),
 }
 
@@ -154,7 +153,7 @@ const ALL: [Assumption; 21] = assumptions! {
     });
 };
 
-/// The plausible range of the assumption with this description.
+/// The plausible range of the assumption with this description; `None` if no assumption has it.
 pub fn plausible_range(words: &str) -> Option<[f64; 2]> {
     let assumption = ALL.iter().find(|assumption| assumption.words == words);
     assumption.map(|assumption| assumption.range)
@@ -167,7 +166,7 @@ struct Row {
     unit: &'static str,
     nominal: f64,
     range: [f64; 2],
-    /// Change of each gait's movement at both ends of the range, percent.
+    /// Change of each gait's movement at the lowest and at the highest value of the range, percent.
     changes: Vec<[f64; 2]>,
 }
 
@@ -180,7 +179,8 @@ pub struct Assumptions {
 }
 
 impl Assumptions {
-    /// Simulates a robot's gaits, with its servos, at both ends of every range. Takes some seconds.
+    /// Simulates a robot's gaits, with its servos, at the lowest and the highest value of every range. Takes some
+    /// seconds.
     pub fn of(robot: &Robot) -> Self {
         let nominal = Inputs::of(robot);
         let gaits = without_mirror_images(robot, |gait| nominal.walk(robot, gait, 1.0));
@@ -219,24 +219,26 @@ impl Assumptions {
 pub struct Extreme {
     /// The movement.
     pub movement: f64,
-    /// The description of the assumption; `None` if all are as in robot.toml.
+    /// The description of the assumption; `None` if all assumptions have the values of robot.toml.
     pub assumption: Option<&'static str>,
 }
 
-/// The smallest and the largest movement of a gait, if one assumption at a time is set to either end of its
-/// plausible range.
+/// The smallest and the largest movement of a gait, if one assumption at a time is set to the lowest or the highest
+/// value of its plausible range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MovementRange {
-    /// True if the gait turns on the spot and the movement is its turn; false if it is its distance ahead.
+    /// True if the gait turns on the spot, so that the movement is its turn; false if the movement is its distance
+    /// ahead.
     pub is_turn: bool,
     /// The smallest movement, with its sign.
     pub least: Extreme,
-    /// The largest movement.
+    /// The largest movement, with its sign.
     pub most: Extreme,
 }
 
 impl MovementRange {
-    /// Simulates a gait, with the robot's servos, at both ends of every range; `pace` is 1 for the gait's own.
+    /// Simulates a gait, with the robot's servos, at the lowest and the highest value of every range; `pace` is 1 for
+    /// the gait's own pace.
     pub fn of(robot: &Robot, gait: &CheckedGait, pace: f64) -> Self {
         let nominal = Inputs::of(robot);
         let travel = nominal.walk(robot, gait, pace);

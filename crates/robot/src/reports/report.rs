@@ -26,7 +26,7 @@ pub struct Row {
     pub movement: Prediction,
     /// Effect of the legs' drive; `None` if legs are rigid without play.
     pub spring_cost: Option<SpringCost>,
-    /// Largest share of its torque-speed line that a servo uses, at the servos' own supply.
+    /// Largest share of its torque-speed line that any servo uses, at the servos' own supply.
     pub line: f64,
     /// Movement in one cycle with the servos' limited torque and speed.
     pub driven: Prediction,
@@ -35,7 +35,7 @@ pub struct Row {
 impl Row {
     /// True for a gait that travels, but whose fastest servo stays below [`SLOW`].
     fn is_slow(&self) -> bool {
-        /// Smallest speed of a gait that travels: mm/s ahead, deg/s of turn.
+        /// Smallest speed at which a gait counts as travelling: mm/s ahead, deg/s of turn.
         const WALKS: (f64, f64) = (5.0, 2.0);
         let speed = |part: Option<f64>| part.unwrap_or_default().abs() / self.period;
         let movement = &self.movement;
@@ -70,15 +70,15 @@ const BESIDE_A_FRAME: usize = 34_000;
 const SEARCHES_LONG: &str = "many gaits: `cal`, or a line that names one, may make a frame 20 ms late; \
      fewer gaits or shorter names avoid it\n";
 
-/// The meaning of a dash in place of a prediction.
+/// The note that explains a dash in place of a prediction.
 pub const UNDECIDED: &str =
     "- undecided: two feet against two, where the smallest difference between the pads decides\n";
 
-/// Rate of the fastest servo, deg/s, below which a gait counts as slow. At an edge of 2 mm in MuJoCo, `walk` and
-/// similar gaits keep nine tenths of their distance; slow ones lose up to a third.
+/// Speed of the fastest servo, deg/s, below which a gait counts as slow. At an edge of 2 mm in MuJoCo, `walk` and
+/// similar gaits keep nine tenths of their distance; slow gaits lose up to a third.
 const SLOW: f64 = 200.0;
 
-/// The assumptions behind the figures of routines with inputs.
+/// The note about the assumptions behind the figures of routines with inputs.
 pub const WITHOUT_CONTACTS: &str =
     "inputs: no contact closes; a wait takes one frame, a gait without an end one cycle\n";
 
@@ -253,7 +253,7 @@ impl fmt::Display for Report {
     }
 }
 
-/// The warning for a gait that leaves its servos little reserve or none.
+/// The warning for a gait that leaves its servos little reserve, or no reserve.
 fn tight(name: &str, line: f64) -> String {
     let meaning = match line < 1.0 {
         true => "little is left for play, a cold gear or a long wire",

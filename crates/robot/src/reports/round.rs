@@ -11,33 +11,34 @@ use crate::measures::servo::FORWARD;
 use crate::robot::Robot;
 use crate::units::{FRAMES_PER_SECOND, STEPS_PER_DEGREE};
 
-/// The figures of a routine.
+/// The size, duration and predicted movement of a routine.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Round {
     /// Name of the routine.
     pub name: String,
     /// The number of steps.
     pub steps: usize,
-    /// The number of rounds; `None` if they never end.
+    /// The number of rounds; `None` if the routine repeats for ever.
     pub rounds: Option<u16>,
     /// True if a contact may end one of its steps.
     pub has_inputs: bool,
     /// Time of one round from standing, at full speed, s.
     pub seconds: f64,
-    /// Movement in one round by the contact model; parts that depend on a tie are `None`.
+    /// Movement in one round with ideal servos, by the contact model. `None` for a component that depends on
+    /// unmeasurable differences between the pads.
     pub movement: Prediction,
-    /// The same movement with the robot's real servos instead of ideal ones.
+    /// Movement in one round with the robot's real servos. `None` for the same components as in `movement`.
     pub driven: Prediction,
 }
 
 impl Round {
-    /// Runs a routine once, with no contact closed ([`Robot::without_contacts`]). The computing time grows with the
-    /// routine's length.
+    /// Simulates one round of a routine, with no contact closed ([`Robot::without_contacts`]). The computing time
+    /// grows with the routine's length.
     pub fn of(robot: &Robot, routine: &Routine) -> Self {
         let mut sweeps: Vec<[f64; 4]> = vec![[0.0; 4]];
         sweeps.extend(Self::sweeps(robot, routine));
         let seconds = (sweeps.len() - 1) as f64 / FRAMES_PER_SECOND;
-        // Ties are between pads, so rigid legs suffice to detect them.
+        // Which components are undecided depends on the pads alone, so rigid legs suffice to find them.
         let known = robot.ground().rigid().predict(sweeps.iter().copied());
         let driven = known.keep_known(driven(robot, &sweeps));
         let movement = known.keep_known(robot.ground().travel(sweeps));
@@ -52,8 +53,8 @@ impl Round {
         }
     }
 
-    /// The sweeps of the legs in each frame of one round that starts from standing, deg, positive if the foot is
-    /// forward.
+    /// Returns the sweeps of the legs in each frame of one round that starts from standing, deg, positive if the
+    /// foot is forward.
     pub fn sweeps(robot: &Robot, routine: &Routine) -> impl Iterator<Item = [f64; 4]> {
         let mut running = Running::power_on(*robot.without_contacts().firmware());
         running.run(STANDS);
@@ -72,7 +73,7 @@ impl Round {
     }
 }
 
-/// Simulates these sweeps frame by frame with the robot's servos, until they are at rest.
+/// Simulates the robot's servos as they follow one set of sweeps per frame, until they are at rest.
 fn driven(robot: &Robot, sweeps: &[[f64; 4]]) -> Travel {
     let (motors, start) = (robot.motors(), sweeps[0]);
     let end = sweeps.last().copied().unwrap_or(start);

@@ -15,13 +15,14 @@ type Change = (&'static str, &'static [f64], fn(&Ground, f64) -> Ground);
 
 /// The varied parameters in the order of the report.
 const CHANGES: [Change; 5] = [
-    // Equal friction both ways, pads with more grip when pushed backward, and pads mounted in reverse.
+    // Friction of a pad that slides backward over that of a pad that slides forward: below 1 for pads mounted in
+    // reverse, 1 for equal friction.
     (
         "friction",
         &[0.8, 1.0, 1.1, 1.25, 1.5, 2.0],
         |ground, ratio| Ground { ratio, ..*ground },
     ),
-    // With 41.4 deg outward, a leg is in line with its servo's horn.
+    // A leg mounted 41.4 deg outward is in line with its servo's horn.
     (
         "mount, deg",
         &[0.0, 20.0, 41.4, 49.0, -41.4],
@@ -64,7 +65,7 @@ fn standing(ground: &Ground, stiffness: f64, twist: f64) -> Ground {
 /// Predictions with changed parameters for all gaits that move.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sensitivity {
-    /// For each gait: its name, and for each table the predictions of a cycle.
+    /// For each gait: its name, and the predictions of a cycle for each value of each parameter in [`CHANGES`].
     rows: Vec<(String, [Vec<Prediction>; CHANGES.len()])>,
     /// Stiffness of the robot's own feet, N/mm.
     leaf: f64,

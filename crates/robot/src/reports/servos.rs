@@ -9,7 +9,7 @@ use crate::measures::ServoType;
 use crate::reports::report::{UNDECIDED, known, widest};
 use crate::robot::Robot;
 
-/// Paces of the servo tables, as the command `speed` takes them: percent of a gait's own.
+/// Paces of the servo tables, as the command `speed` takes them: percent of a gait's own pace.
 pub const PACES: [f64; 2] = [100.0, 50.0];
 
 /// The figures of a gait at one supply and pace.
@@ -19,23 +19,23 @@ struct Cell {
     movement: Prediction,
 }
 
-/// The figures of a gait at every supply.
+/// The figures of a gait at every supply and pace.
 #[derive(Debug, Clone, PartialEq)]
 struct Row {
     name: String,
-    /// The cells for each pace, and within it for each supply.
+    /// The figures at each pace, and within a pace at each supply.
     cells: [[Cell; 3]; PACES.len()],
-    /// Highest pace at which no servo exceeds its line, percent, for each supply.
+    /// For each supply, the highest pace at which no servo exceeds its torque-speed line, percent.
     paces: [f64; 3],
 }
 
-/// The table of the gaits that move, at the servos' own supply and at those at which the robot slows down and
-/// stops.
+/// The table of the gaits that move: at the servos' own supply, at the supply at which the robot slows down, and
+/// at the supply at which it stops.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ServoTable {
     servo: ServoType,
     volts: [f64; 3],
-    /// Percentage of their own pace to which gaits are limited at a low supply.
+    /// Pace to which gaits are limited at a low supply, percent of their own pace.
     slow_pace: u8,
     rows: Vec<Row>,
 }

@@ -12,8 +12,9 @@ pub struct SpringCost {
     pub movement: Prediction,
     /// Largest lag of a leg behind its servo, deg.
     pub lag: f64,
-    /// Movement of a cycle divided by that with rigid legs: the share of the distance ahead or of the turn,
-    /// whichever is smaller. `None` if rigid legs hardly move the robot, or if their movement depends on ties.
+    /// Movement of a cycle divided by the movement with rigid legs: the share of the distance ahead or of the turn,
+    /// whichever is smaller. `None` if the robot hardly moves on rigid legs, or if that movement depends on
+    /// unmeasurable differences between the pads.
     pub share: Option<f64>,
 }
 
@@ -21,7 +22,8 @@ pub struct SpringCost {
 const MIN_MOVEMENT: (f64, f64) = (1.0, 0.5);
 
 impl SpringCost {
-    /// Compares a gait on this ground with the same gait on rigid legs. Returns `None` if the legs do not lag.
+    /// Compares a gait on this ground with the same gait on rigid legs. Returns `None` if the drive is rigid, so
+    /// that legs do not lag.
     pub fn of(gait: &CheckedGait, ground: &Ground) -> Option<Self> {
         if !ground.drive.lags() {
             return None;

@@ -5,7 +5,7 @@ use lizard_kinematics::{Pose, Solution, wrap};
 use crate::measures::servo;
 use crate::robot::Robot;
 
-/// All reasons why the robot may not take a solved pose, each as a message; empty if the pose is safe.
+/// Returns all reasons why the robot may not take a solved pose, each as a message; none if the pose is safe.
 pub fn reasons(robot: &Robot, solution: &Solution) -> Vec<String> {
     let limits = robot.limits().violations(solution);
     limits
@@ -14,13 +14,13 @@ pub fn reasons(robot: &Robot, solution: &Solution) -> Vec<String> {
         .collect()
 }
 
-/// A message for each servo that cannot reach its angle in a pose.
+/// Returns a message for each servo that cannot reach its angle in a pose.
 pub fn out_of_travel(robot: &Robot, pose: &Pose) -> impl Iterator<Item = String> {
     let angles = <[f64; 4]>::from(*pose);
     (0..4).filter_map(move |i| beyond(robot, i, angles[i]))
 }
 
-/// A message if a servo (0 to 3) cannot reach an angle (deg, chassis frame).
+/// Returns a message if a servo (0 to 3) cannot reach an angle (deg, chassis frame), `None` if it can.
 pub fn beyond(robot: &Robot, servo: usize, angle: f64) -> Option<String> {
     let limits_of_servo = &robot.servos()[servo];
     (!limits_of_servo.reaches(angle)).then(|| {

@@ -1,9 +1,10 @@
 //! The core's view of a robot on a host.
 //!
-//! The core reads a section of flash. On a host that section is in memory, and the core's motion borrows it for as
-//! long as it runs. So the section of a robot that runs on the core ([`crate::Robot::firmware`]) is kept until the
-//! program ends. It is at most 4 KiB, and equal sections are stored once. The section of a robot that is only
-//! checked ([`crate::Robot::core`]) is not kept, so a search may try thousands of robots.
+//! The core reads a robot from a section of flash. On a host that section is in memory, and the core's motion borrows
+//! the section for as long as it runs. So the section of a robot that the core simulates
+//! ([`crate::Robot::firmware`]) is kept until the program ends. A section is at most 4 KiB, and equal sections are
+//! stored once. The section of a robot that is only checked ([`crate::Robot::core`]) is not kept, so a search may try
+//! thousands of robots.
 
 use std::collections::HashSet;
 use std::sync::{Mutex, PoisonError};

@@ -1,8 +1,8 @@
 //! The robot's numbers as integers, in the types of the core.
 //!
-//! Sixteen bits can hold any robot's lengths if the step suits the robot's size, so each mechanism has its own
-//! scale. A number that is not an integer is rounded to the safe side: limits of margins up, strokes and travels
-//! inward, the slew limit down.
+//! Sixteen bits can hold any robot's lengths if the step suits the robot's size, so each five-bar and each slider
+//! has its own scale. Limits are rounded to the safe side: those of margins up, strokes and travels inward, the slew
+//! limit down. All other numbers are rounded to the nearest integer.
 
 use lizard_avr::Flash;
 use lizard_core::numbers::calibration::Calibration;
@@ -22,7 +22,7 @@ use crate::measures::{Measures, scale};
 use crate::tables::table::Tables;
 use crate::units::{CYCLES_PER_US, FRAMES_PER_SECOND, ONE_Q14, ONE_Q15, STEPS_PER_DEGREE};
 
-/// Rounding error that may occur in a number that robot.toml gives exactly.
+/// Largest floating-point error of a number that would be an integer if computed exactly.
 const SLACK: f64 = 1e-6;
 
 /// Computes the numbers of a robot, without its maps of certified cells.
@@ -78,8 +78,8 @@ pub(crate) fn content(
     }
 }
 
-/// Computes the hash of the servos only, which ties a saved calibration to them. Gaits, bars and limits do not
-/// change it.
+/// Computes the hash of the servos' numbers. A saved calibration carries this hash, so it is used only with the
+/// servos for which it was made. Gaits, bars and limits do not change the hash.
 fn servo_hash(pins: &[u8; 4], neutral: &[Angle; 4], calibration: &[Calibration; 4]) -> u32 {
     crc32fast::hash(format!("{pins:?} {neutral:?} {calibration:?}").as_bytes())
 }
@@ -111,9 +111,9 @@ fn calibration(servo: &Servo) -> Calibration {
     }
 }
 
-/// Computes the range of each servo's sweep over all gaits, neutral included. Between two samples a gait follows a
-/// straight line, so no phase exceeds the samples. Rounding may put a gait that uses a whole travel a step beyond
-/// it, because the travel is rounded inward; so the range is limited to the travel.
+/// Computes the range of each servo's sweep over all gaits, neutral included. Between two samples a gait is
+/// interpolated linearly, so no phase exceeds the samples. The travel is rounded inward, so the rounded sweep of a
+/// gait that uses the whole travel may exceed the travel by a step; so the range is limited to the travel.
 fn reach(tables: &Tables, travel: &[Calibration; 4]) -> [Reach; 4] {
     let mut reach = [Reach::default(); 4];
     for gait in &tables.gaits {
@@ -135,7 +135,7 @@ fn reach(tables: &Tables, travel: &[Calibration; 4]) -> [Reach; 4] {
     reach
 }
 
-/// Converts a side; its stroke is rounded inward.
+/// Converts the slider of a side to integers; its stroke is rounded inward.
 fn side(slider: &kinematics::Slider, limits: &kinematics::Limits) -> Slider {
     let scale = scale::of_side(slider, limits.stroke_max);
     let length = |mm: f64| steps(mm, scale);
@@ -156,7 +156,7 @@ fn steps(mm: f64, scale: Scale) -> i32 {
     (mm * scale::steps_per_mm(scale)).round() as i32
 }
 
-/// Converts the limit of a margin; it is rounded up.
+/// Converts the limit of a margin to an integer, rounded up.
 fn sine(margin: f64) -> Sine {
     Sine(ceil(margin * ONE_Q15) as i16)
 }
@@ -282,8 +282,8 @@ mod tests {
 
     #[test]
     fn a_loop_is_near_stretched_beyond_three_quarters_of_its_reach() {
-        // Three quarters of the squared reach, so base and cranks together must exceed .866 of both couplers
-        // together.
+        // The threshold is three quarters of the squared reach of the couplers, so base plus cranks must exceed 0.866
+        // of the sum of both couplers.
         for (bars, near) in [
             ([20.0, 30.0, 30.0], false),
             ([26.0, 30.0, 30.0], false),
@@ -316,7 +316,7 @@ mod tests {
                         * (servo.neutral_us
                             + servo.us_per_degree * f64::from(sweep) * 360.0 / 65536.0);
                     let width = calibration.width(Sweep(sweep as i16));
-                    // Up to half a cycle of rounding error each: neutral, gain over the travel, product.
+                    // Neutral, gain over the travel, and product: each has a rounding error of up to half a cycle.
                     let error = (f64::from(width.0) - cycles).abs();
                     assert!(error <= 1.5, "{name} A{}: {error} cycles at {sweep}", i + 1);
                 }
@@ -361,7 +361,7 @@ mod tests {
         assert!(slow.firmware().slew().per_frame >= Slew::SLOWEST);
     }
 
-    /// The numbers of a section.
+    /// Reads the numbers of a robot's section.
     fn numbers_of(robot: &crate::Robot) -> Numbers {
         let section = robot.section();
         Flash::from(section.as_slice()).read(size_of::<Header>())
@@ -370,8 +370,8 @@ mod tests {
     #[test]
     fn only_unequal_couplers_and_wide_cranks_have_further_tables() {
         for (name, robot) in all() {
-            // The offset of each curve; 0 if there is none. Both ends have the same couplers and share their
-            // curves.
+            // The offset of each curve in the section; 0 if the section lacks the curve. Head and tail have equal
+            // couplers and share their curves.
             let [head, tail] = numbers_of(&robot).curves;
             let [rise, stretched, folded, skew] = head;
             assert_ne!(rise, 0, "{name}");

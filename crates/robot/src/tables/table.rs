@@ -13,10 +13,10 @@ use crate::gaits::{Gait, Stride, Waveform, canonical};
 use crate::measures::servo::{FORWARD, NAMES};
 use crate::units::{FRAMES_PER_SECOND, ONE_Q14, PHASES, STEPS_PER_DEGREE};
 
-/// Waveforms that differ by less than this (deg), a third of an angle step, share a table.
+/// Largest difference between two waveforms that share a table, deg: about a third of an angle step.
 const SAME_DEG: f64 = 0.002;
 
-/// The tables that the firmware reads in order to walk.
+/// The tables of waveforms and gaits that the firmware reads.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Tables {
     /// Waveforms, in angle steps at gain 1.
@@ -28,10 +28,11 @@ pub(crate) struct Tables {
 }
 
 impl Tables {
-    /// Builds the tables.
+    /// Builds the tables of these gaits.
     ///
     /// # Errors
-    /// Returns the first gait that does not fit the fixed-point tables.
+    /// Fails at the first gait that sweeps a servo by half a turn or more, or that needs more than [`MAX_WAVES`]
+    /// waveforms.
     pub fn new(gaits: &[Gait]) -> Checked<Self> {
         let mut bank = WaveformBank::default();
         let mut parts = Vec::new();
@@ -96,8 +97,8 @@ impl Tables {
 }
 
 impl Tables {
-    /// The sweeps from neutral of the gait number `gait` at a phase in 1/65536 cycle: in angle steps, positive
-    /// counter-clockwise, servo order.
+    /// Returns the sweeps from neutral of the gait number `gait` at a phase in 1/65536 cycle: in angle steps,
+    /// positive counter-clockwise, servo order.
     pub fn sweeps(&self, gait: usize, phase: u16) -> [i16; 4] {
         self.gaits[gait].channels.map(|channel| {
             let wave = Flash::from(&self.waves[usize::from(channel.wave)]);
@@ -106,16 +107,16 @@ impl Tables {
     }
 }
 
-/// The phase increment per frame, in 1/2^24 cycle.
+/// Computes a gait's phase increment per frame, in 1/2^24 cycle; negative if the gait is reversed.
 fn increment(gait: &Gait) -> i32 {
     let step = (f64::from(CYCLE) / (FRAMES_PER_SECOND * gait.period)).round() as i32;
     if gait.reversed { -step } else { step }
 }
 
-/// A stride, as a waveform of the bank times an amplitude.
+/// A stride as the firmware stores it: a waveform of the bank times an amplitude, with a lead.
 struct Part {
     wave: usize,
-    /// Its lead over the stored waveform, cycles.
+    /// Lead of the stride over the stored waveform, cycles.
     lead: f64,
     /// Amplitude, deg, positive counter-clockwise.
     amplitude: f64,
@@ -180,9 +181,10 @@ impl WaveformBank {
 
 /// Samples a waveform so that the straight lines between the samples have zero mean error.
 ///
-/// A line between two points of a curve lies on its inner side, so samples on the curve would make every stride too
-/// short (the paper's walk by 1 %). Each sample is moved outward by the mean distance between line and curve, a
-/// twelfth of the second difference, but not beyond the waveform's peak, because a servo's travel may end there.
+/// A line between two points of a curve lies on the concave side of the curve, so samples on the curve would make
+/// every stride too short (the paper's walk by 1 %). Each sample is moved outward by the mean distance between line
+/// and curve, a twelfth of the second difference, but not beyond the waveform's peak, because a servo's travel may
+/// end at the peak.
 fn samples(waveform: &Waveform) -> [f64; SAMPLES] {
     let on: [f64; SAMPLES] = std::array::from_fn(|i| waveform.at(i as f64 / SAMPLES as f64));
     let peak = peak(&on);
@@ -198,7 +200,7 @@ fn peak(samples: &[f64; SAMPLES]) -> f64 {
     samples.iter().fold(0.0, larger)
 }
 
-/// Finds the rotation that makes `existing` equal to `samples` within `tolerance`.
+/// Finds the number of samples by which to rotate `existing` so that it equals `samples` within `tolerance`.
 fn find_rotation(
     existing: &[f64; SAMPLES],
     samples: &[f64; SAMPLES],
@@ -312,7 +314,8 @@ mod tests {
 
     #[test]
     fn gaits_that_differ_only_in_amplitude_start_and_gain_share_a_waveform() {
-        // Two waves, two held shapes for four turns, and one path for two servos that mirror each other.
+        // Two waves, two waveforms with holds that four turning gaits share, and one path for two servos that mirror
+        // each other.
         assert_eq!(waves(&robot("paper")), 5);
         let other = with("paper", &[("amplitude = 15.0", "amplitude = 14.0")]).expect("a trot");
         assert_eq!(waves(&other), 5);

@@ -1,4 +1,4 @@
-//! Comparison of the tables in docs/gaits.md, docs/limits.md and docs/twin.md with computed ones.
+//! Comparison of the tables in docs/gaits.md, docs/limits.md and docs/twin.md with freshly computed tables.
 
 use lizard_robot::{
     Assumptions, Drive, Effort, Ground, HIGH_LINE_SHARE, Kind, Report, Robot, Sensitivity,
@@ -16,7 +16,7 @@ fn fenced(text: String) -> String {
     format!("```text\n{text}```\n")
 }
 
-/// Returns a page with the text between a marker and the next end marker replaced.
+/// Returns a page in which `text` replaces everything between a marker and the next end marker.
 fn filled(page: &str, marker: &str, text: &str) -> String {
     let marker = format!("<!-- {marker} -->\n");
     let start = page.find(&marker).expect(&marker) + marker.len();
@@ -67,10 +67,11 @@ fn check(path: &str, page: &str, new: &str) {
     }
 }
 
-/// Spring forces in the table of slotted struts, N; `None` for rigid struts.
+/// Spring forces in the table of slotted struts, N; `None` stands for a rigid strut.
 const PULLS: [Option<f64>; 6] = [Some(0.5), Some(1.0), Some(2.0), Some(3.0), Some(5.0), None];
 
-/// Makes a row of the table of slotted struts, whose springs have the rate of the paper's coil.
+/// Makes the cells of a row of the table of slotted struts: one figure of a gait for each spring force. The springs
+/// have the rate of the paper's coil.
 fn slotted(name: &str, figure: fn(Walked) -> f64) -> String {
     let rate = paper().parts().spring.rate();
     let cells = PULLS.map(|force| {
@@ -115,8 +116,8 @@ fn the_page_on_the_twin_shows_the_cost_of_springs() {
     );
 }
 
-/// Returns a robot's row of the table of paces: its hardest gait at the supply at which the robot stops, and the
-/// highest pace at which every gait leaves the servos enough torque at that supply.
+/// Makes a robot's row of the table of paces: the gait that loads the servos most at the supply at which the robot
+/// stops, and the highest pace at which every gait leaves the servos enough torque at that supply.
 fn slow_pace(file: &str) -> String {
     let path = format!("{}/../../robots/{file}.toml", env!("CARGO_MANIFEST_DIR"));
     let robot = Robot::load(&path).unwrap_or_else(|error| panic!("{error}"));

@@ -13,7 +13,7 @@ fn ground_with(drive: Drive) -> Ground {
     }
 }
 
-/// Slotted struts with a spring of this force and the rate of the paper's coil.
+/// Returns the ground of a robot on slotted struts, with springs of this force (N) and the rate of the paper's coil.
 fn strut(force: f64) -> Ground {
     ground_with(Drive {
         kind: Kind::Strut(paper().strut_with(force, 0.395)),
@@ -81,8 +81,8 @@ fn gaits_lose_to_play_what_another_solver_found() {
 
 #[test]
 fn a_leg_leaves_its_servo_only_where_its_strut_grows_longer() {
-    // The spring is so weak that the front legs lag while their servos turn forward, and the hind legs while theirs
-    // turn backward.
+    // The spring is so weak that the front legs lag while their servos turn forward, and the hind legs lag while
+    // their servos turn backward.
     let ground = strut(0.5);
     let mut walker = Walker::new(ground, [0.0; 4]);
     for i in 1..=300 {
@@ -138,7 +138,7 @@ fn the_table_of_a_drive_makes_the_ground() {
         .strut()
         .expect("a strut");
     assert_eq!(strut, paper().strut_with(4.0, 0.4));
-    // Without these keys, both values follow from the coil as it is mounted between its screws.
+    // Without the keys `force` and `rate`, both follow from the coil spring as it is mounted between its screws.
     let coil = drive("kind = \"strut\"");
     assert_eq!(
         coil.strut(),

@@ -9,7 +9,7 @@ use crate::paper;
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/golden");
 const ROWS: u32 = 64;
 
-/// Phase and the four servo angles as the firmware reads them, deg.
+/// Makes a CSV table of a gait: the phase in cycles, and the four servo angles that the firmware reads, deg.
 fn snapshot(gait: &CheckedGait) -> String {
     let mut text = "phase,A1,A2,A3,A4\n".to_string();
     for row in 0..ROWS {

@@ -12,7 +12,7 @@ fn paper_with_tables(tables: &str) -> Result<Robot, Error> {
     Robot::parse(&format!("{}\n\n{tables}", paper_text().trim_end()))
 }
 
-/// Returns the error message for these tables, with its line number counted from the first of them.
+/// Returns the error message for these tables, with its line number counted from their first line.
 fn refusal(tables: &str) -> String {
     let error = paper_with_tables(tables).map(|_| ()).expect_err(tables);
     let before = paper_text().trim_end().lines().count() + 1;

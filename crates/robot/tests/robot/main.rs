@@ -31,7 +31,7 @@ fn gait<'a>(robot: &'a Robot, name: &str) -> &'a CheckedGait {
     robot.gait(name).expect(name)
 }
 
-/// The body for which another implementation of the contact model gave its figures.
+/// The body for which another implementation of the contact model computed the expected figures.
 const STUDIED: Body = Body {
     mass: 307.0,
     ..Body::DEFAULT

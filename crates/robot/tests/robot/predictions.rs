@@ -1,5 +1,5 @@
-//! Predicted movements of the paper's gaits: they match the figures by which the gaits were chosen, and have
-//! properties that follow exactly from the contact model.
+//! Predicted movements of the paper's gaits: they match the figures by which the gaits were chosen, and have the
+//! symmetries that the contact model has.
 
 use lizard_robot::{Report, Robot, Travel};
 use proptest::prelude::*;
@@ -20,7 +20,7 @@ const EXPECTED: [(&str, f64, f64); 9] = [
     ("arc-right", 17.71, -5.27),
 ];
 
-/// Returns the predicted movement of one cycle of a gait. Panics if a part of it is undecided.
+/// Returns the predicted movement of one cycle of a gait. Panics if a component of the movement is undecided.
 fn predict(robot: &Robot, name: &str) -> Travel {
     let movement = robot.predict(gait(robot, name));
     let known =

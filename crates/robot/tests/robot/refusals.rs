@@ -14,7 +14,8 @@ struct Mistake {
     message: String,
 }
 
-/// Reads the mistakes from mistakes.txt.
+/// Reads the mistakes from mistakes.txt. There, `-` marks the text of the file, `+` its replacement and `=` the
+/// message.
 fn mistakes() -> impl Iterator<Item = Mistake> {
     let blocks = include_str!("mistakes.txt").split("\n\n");
     blocks.filter(|block| block.starts_with('-')).map(|block| {

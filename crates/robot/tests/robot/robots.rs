@@ -1,4 +1,4 @@
-//! Properties of every robot in robots/ and of robot.toml, the builder's own robot.
+//! Properties of every robot in robots/ and of the builder's own robot, robot.toml.
 
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use lizard_kinematics::Check;
 use lizard_robot::{CheckedGait, Robot, STEPS_PER_DEGREE};
 
-/// Lists the files in robots/ and robot.toml.
+/// Lists the files in robots/, and robot.toml.
 fn files() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let folder = std::fs::read_dir(root.join("robots")).expect("robots/");
@@ -53,7 +53,7 @@ fn every_gait_is_safe_between_its_samples_too() {
             let pose = gait.table_angles(phase).into();
             let solution = robot.lizard().solve(&pose).expect("it closes");
             if let Some(violation) = robot.limits().violations(&solution).next() {
-                // The check looks at 1024 phases. Between two of them, a margin changes by less than this.
+                // The check samples 1024 phases. Between two samples, a margin changes by less than 0.01.
                 let by = (violation.value - violation.limit).abs();
                 assert!(by < 0.01, "{file} {} at {phase}: {violation}", gait.name());
             }
@@ -81,7 +81,7 @@ fn an_audit_has_the_least_margins_of_all_phases() {
         }
         let found = [audit.type2.value, audit.type1.value, audit.leg.value];
         for (found, sampled) in found.into_iter().zip(least_margins) {
-            // The audit looks at more phases, so its minimum may be smaller.
+            // The audit samples more phases than this test, so its minimum may be smaller.
             assert!(
                 (0.0..0.002).contains(&(sampled - found)),
                 "{file} {}",
@@ -147,7 +147,7 @@ fn every_gait_has_its_place_its_name_and_its_travel() {
                 for (servo, sweep) in robot.servos().iter().zip(gait.table_sweeps(phase)) {
                     let pulse = servo.neutral_us
                         + servo.us_per_degree * f64::from(sweep) / STEPS_PER_DEGREE;
-                    // Sweeps and ends are rounded to a step, a tenth of a microsecond.
+                    // Sweeps and the limits of the travel are rounded to a step, up to a tenth of a microsecond.
                     assert!(
                         pulse > servo.min_us - 0.2 && pulse < servo.max_us + 0.2,
                         "{file} {} at {phase}: {pulse} us",

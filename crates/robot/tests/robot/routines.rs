@@ -1,4 +1,5 @@
-//! Routines of robot.toml: valid and invalid steps, their records in the section, and the distance they cover.
+//! Routines of robot.toml: valid and invalid steps, the routines' records in the section, and the predicted movement
+//! of a round.
 
 use lizard_core::numbers::gaits::Step;
 use lizard_robot::{Error, Robot, Round};
@@ -156,7 +157,7 @@ fn a_mistake_is_reported_with_its_line_and_its_step() {
             "step 1, \"\", names the gait \"\", which does not exist; allowed are stand, walk, trot, crawl, back, left, right, arc-left, arc-right, look",
         ),
     ] {
-        // After the file come a blank line, the routine's table, and then its first key.
+        // The paper's file is followed by a blank line, the header of the routine's table, and then its first key.
         let line = paper_text().lines().count() + 3;
         let expected = format!("robot.toml:{line}: routine.patrol.steps: {message}");
         assert_eq!(refusal(lines), expected);
@@ -264,6 +265,6 @@ fn a_round_takes_its_cycles_and_changes_and_leads_as_far_as_its_gaits() {
     let share = about.movement.turn.expect("known") / (5.0 * left);
     assert!((0.9..1.1).contains(&share), "{share}");
     assert_eq!((about.rounds, about.steps), (None, 2));
-    // Two feet pull against two: unmeasurable differences of the pads decide where it goes.
+    // Two feet pull against two: unmeasurable differences between the pads decide whether the robot moves.
     assert_eq!(gaze.movement.forward, None);
 }

@@ -1,4 +1,5 @@
-//! The distribution of load over four feet that statics leaves open, and the cost of a foot that is too long.
+//! The load of four feet, which statics alone does not determine, and the distance that a foot that is too long
+//! costs.
 
 use lizard_robot::{Body, Ground, Stance, Walker};
 
@@ -15,7 +16,7 @@ const GAITS: [&str; 8] = [
     "arc-right",
 ];
 
-/// Returns the paper's ground with feet of this stiffness, the front left one too long by `twist`.
+/// Returns the paper's ground with feet of this stiffness (N/mm), the front left foot too long by `twist` (mm).
 fn ground_with(stiffness: f64, twist: f64) -> Ground {
     Ground {
         stance: Stance {
@@ -30,8 +31,8 @@ fn ground_with(stiffness: f64, twist: f64) -> Ground {
 
 #[test]
 fn four_tenths_on_a_diagonal_cost_as_much_as_another_solver_found() {
-    // The expected figures come from a separate implementation, in which both feet of one diagonal always carry an
-    // extra load, and the other two carry as much less.
+    // The expected figures come from a separate implementation, in which the feet of one diagonal always carry
+    // four tenths more load, and the other two feet four tenths less.
     for (name, expected) in [
         ("walk", 24.8),
         ("crawl", 17.4),
@@ -77,7 +78,7 @@ fn on_a_leaf_of_three_newton_a_millimetre_half_a_millimetre_stops_the_robot() {
         cycle_movement(gait, &ground_with(3.3, 0.6)) / cycle_movement(gait, paper().ground())
     };
     assert!(share("walk") < 0.25 && share("crawl") < 0.15 && share("left") < 0.25);
-    // Feet can be adjusted to a fifth of a millimetre; such an error does not matter.
+    // Feet can be adjusted to a fifth of a millimetre; an error of this size does not matter.
     let gait = gait(paper(), "walk");
     assert!(cycle_movement(gait, &ground_with(3.3, 0.2)) > 33.5);
 }

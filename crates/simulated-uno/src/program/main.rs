@@ -1,6 +1,6 @@
 //! `simulated-uno program.hex`: runs a program without a board.
 //!
-//! It prints the lines of the serial port as they arrive, each with its time, and then the pulses
+//! Prints the lines of the serial port as they arrive, each with its time, and then the pulses
 //! that an oscilloscope would have shown on each pin.
 
 mod report;

@@ -4,15 +4,15 @@ use std::io::{self, Write};
 
 use simulated_uno::{CYCLES_PER_MS, CYCLES_PER_US, Edge, Pin, SerialByte, State, Uno, pulses};
 
-/// The longest line that waits for its line end. Longer lines are printed in pieces.
+/// The longest line that is printed as one, bytes. Longer lines are printed in pieces.
 const MAX_LINE_BYTES: usize = 200;
 
 /// The UNO's serial text, printed line by line.
 #[derive(Default)]
 pub struct Text {
-    /// The bytes of the line received so far.
+    /// The bytes received so far of the line that has not been printed.
     line: Vec<u8>,
-    /// The cycle of its last byte.
+    /// The cycle at which the last byte was received.
     cycle: u64,
 }
 
@@ -64,7 +64,7 @@ pub fn escape(text: &str) -> String {
     escaped
 }
 
-/// Prints the pulses of all pins that had any: one line for each pin, or for each pulse.
+/// Prints the pulses of all pins that have changed: one line for each pulse if `shows_all`, else one for each pin.
 pub fn print_pins(edges: &[Edge], shows_all: bool, out: &mut impl Write) -> io::Result<()> {
     let us = |cycles: u64| cycles as f64 / CYCLES_PER_US as f64;
     writeln!(out)?;
@@ -107,7 +107,7 @@ pub fn print_pins(edges: &[Edge], shows_all: bool, out: &mut impl Write) -> io::
     Ok(())
 }
 
-/// Prints the final state and the resources used.
+/// Prints the UNO's final state and the resources used: time, flash, SRAM, CPU time.
 pub fn end(uno: &Uno, flash: u32, out: &mut impl Write) -> io::Result<()> {
     let state = match uno.state() {
         State::Alive => "It runs on.".to_owned(),
@@ -116,7 +116,7 @@ pub fn end(uno: &Uno, flash: u32, out: &mut impl Write) -> io::Result<()> {
         State::Off => "The power is off.".to_owned(),
     };
     let awake = 100.0 * uno.awake_cycles() as f64 / uno.cycle().max(1) as f64;
-    // Intel HEX does not say where the static data end and the room for the stack begins.
+    // Intel HEX does not contain the size of the static data, so the room for the stack is unknown.
     let memory = match uno.image().symbols() {
         [] => String::new(),
         _ => format!(

@@ -8,8 +8,8 @@ use super::{causes, distances, mark_cycles, marks, uno};
 /// ADC clock of 125 kHz: prescaler 128.
 const CLOCK: u64 = 128;
 
-/// Compiles a program with two macros: `convert()` runs a conversion and shows it, and `show()` marks the result, low
-/// byte first.
+/// Compiles a program that can use these macros: `start()` starts a conversion, `wait()` waits for its end, `show()`
+/// writes the result to GPIOR0 as two marks, low byte first, and `convert()` does all three.
 fn program(body: &str) -> Image {
     c(&format!(
         "#include <avr/io.h>
@@ -23,13 +23,13 @@ fn program(body: &str) -> Image {
     ))
 }
 
-/// Returns a UNO with this program.
+/// Returns a UNO whose program consists of this text and the macros of [`program`].
 pub fn with(body: &str) -> Uno {
     uno(program(body))
 }
 
-/// Returns a UNO whose main program runs these statements once, with these voltages at A0 and the pins after it,
-/// mV.
+/// Returns a UNO whose main program runs these statements once, with these voltages (mV) at A0 and the following
+/// pins.
 fn run_once(body: &str, volts: &[u16]) -> Uno {
     let mut uno = with(&format!("int main(void) {{ {body} for (;;) {{}} }}"));
     for (n, mv) in (0..).zip(volts) {
@@ -185,7 +185,7 @@ fn registers_read_as_the_data_sheet_says() {
 #[test]
 fn the_first_conversion_takes_25_clocks_and_others_13() {
     // Table 24-1: "First conversion 25", "Normal conversions, single ended 13".
-    // It "starts at the following rising edge of the ADC clock", so up to one more.
+    // A conversion "starts at the following rising edge of the ADC clock", so it may take up to one clock more.
     let mut uno = run_once(
         "ADMUX = 0x40; ADCSRA = 0x87;
         for (unsigned char i = 0; i < 3; i++) { start(); GPIOR0 = i; wait(); GPIOR0 = i; }
@@ -215,8 +215,8 @@ fn the_prescaler_divides_by_table_24_5() {
         uno.run_ms(2);
         let cycles = mark_cycles(&uno);
         let (first, last, count) = (cycles[1], cycles[cycles.len() - 1], cycles.len() as u64 - 2);
-        // Free running: "a new conversion will be started immediately". The loop is too slow for the smallest
-        // divisors.
+        // Free running: "a new conversion will be started immediately". With the smallest divisors, the program's
+        // loop is slower than a conversion.
         let is_right = match divisor {
             8.. => (last - first).abs_diff(count * 13 * divisor) < 40,
             _ => count > 500,
@@ -254,8 +254,8 @@ fn the_adc_interrupt_wakes_the_cpu_and_clears_its_flag() {
 
 #[test]
 fn a_voltage_is_sampled_when_table_24_1_says() {
-    // "Sample & Hold (Cycles from Start of Conversion)": 1.5, in the first conversion 13.5. The start is the next
-    // clock edge, at most one clock after ADSC is set.
+    // "Sample & Hold (Cycles from Start of Conversion)": 1.5 clocks, in the first conversion 13.5. A conversion
+    // starts at the next clock edge, at most one clock after ADSC is set.
     for (body, sampled, too_late) in [
         (
             "start(); wait(); GPIOR0 = 0; start(); wait(); show();",
@@ -323,7 +323,7 @@ fn the_bandgap_needs_70_us_after_the_channel_is_selected() {
 
 #[test]
 fn the_bandgap_has_settled_after_70_us_and_not_before() {
-    // ADC clock of 1 MHz, so that the start is known to a microsecond.
+    // With an ADC clock of 1 MHz, the start of a conversion is known to a microsecond.
     let first = |wait: u32| {
         let body = format!(
             "ADMUX = 0x40; ADCSRA = 0xc4; wait();

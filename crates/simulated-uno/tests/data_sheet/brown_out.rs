@@ -1,11 +1,11 @@
-//! Tests of a supply that falls and rises, against the data sheet, chapters 11.4 and 11.5.
+//! Tests of the chip on a supply that falls and rises, against the data sheet, chapters 11.4 and 11.5.
 
 use simulated_uno::{CYCLES_PER_MS, CYCLES_PER_US, Pin, PowerCut, ResetCause, State, Uno};
 
 use super::adc::with;
 use super::{causes, marks};
 
-/// Runs for a millisecond with this supply.
+/// Sets the supply voltage and runs for a millisecond.
 fn supply(uno: &mut Uno, mv: f64) {
     uno.set_supply_mv(mv);
     uno.run_ms(1);
@@ -133,7 +133,7 @@ fn the_watchdog_stands_still_while_the_supply_holds_the_chip() {
     uno.run_ms(10);
     assert_eq!(marks(&uno), [1, 8, 4, 8]);
 
-    // The same if WDRF is still set and switches the watchdog on at each reset.
+    // The watchdog also stands still if WDRF is still set, which switches the watchdog on at each reset.
     let mut uno = with(
         "#include <avr/wdt.h>
         int main(void) { if (!(MCUSR & 8)) wdt_enable(WDTO_15MS); for (;;) {} }",

@@ -4,8 +4,8 @@ use simulated_uno::{Pin, Uno, avr_gcc};
 
 use super::{BOTH, marks};
 
-/// Program that enables the pull-ups of D4, D8 and A1 by writes to PIN, see 14.2.2. Then it shows the three pins'
-/// levels repeatedly, as bits 0, 1 and 2.
+/// Program that enables the pull-ups of D4, D8 and A1 by writes to PIND, PINB and PINC (data sheet, 14.2.2), and then
+/// repeatedly marks the levels of the three pins as bits 0, 1 and 2.
 const PROGRAM: &str = "
 #include <avr/io.h>
 int main(void) {

@@ -67,7 +67,7 @@ fn a_foreign_interrupt_ends_a_sleep_and_is_served_before_the_chips_own() {
         uno.block_interrupts(3_000);
         uno.run_until_cycle(35_000);
         let marks = marks(&uno);
-        // The first interrupt is about 2000 cycles late, the others are on time.
+        // The first interrupt of Timer1 is about 2000 cycles late, the following ones are on time.
         assert!((120..135).contains(&marks[0]), "{marks:?}");
         assert!(marks[1..].iter().all(|mark| *mark < 4), "{marks:?}");
         assert_eq!(marks.len(), 3);
@@ -87,7 +87,7 @@ fn bytes_that_arrive_while_nothing_is_executed_are_lost_as_on_the_chip() {
     let mut uno = uno(image);
     uno.run_until_cycle(1000);
     uno.send(b"abcdefgh");
-    // Three bytes have arrived. During the next five, the chip keeps two in its buffer and the last one.
+    // Three bytes have arrived. During the next five, the receive buffer keeps two and the shift register the last.
     uno.run_until_cycle(1000 + 3 * 1389 + 100);
     uno.block_interrupts(5 * 1389);
     uno.run_until_cycle(30_000);

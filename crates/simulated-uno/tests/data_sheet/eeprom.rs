@@ -5,18 +5,19 @@ use simulated_uno::{CYCLES_PER_US, EEPROM_SIZE, EepromMode, Fidelity, Image, Uno
 
 use super::{FIXED, after, after_ms, distances, mark_cycles, marks, uno, widths};
 
-/// Table 8-1: "Erase and Write in one operation (Atomic Operation)", 3.4 ms.
+/// Cycles of an operation that erases and writes. Table 8-1: "Erase and Write in one operation (Atomic Operation)",
+/// 3.4 ms.
 pub const ATOMIC: u64 = 3400 * CYCLES_PER_US;
-/// Table 8-1: "Erase Only" and "Write Only", 1.8 ms.
+/// Cycles of an operation that only erases or only writes. Table 8-1: "Erase Only" and "Write Only", 1.8 ms.
 const SINGLE: u64 = 1800 * CYCLES_PER_US;
 
-/// Returns a UNO that has run these instructions, then an endless loop, for a number of cycles in all.
+/// Returns a UNO that has run for a number of cycles: first these instructions, then an endless loop.
 fn run(source: &str, cycles: u64) -> Uno {
     after(cycles, assembler(&format!("{source}\nend: rjmp end")))
 }
 
-/// Compiles `body` with `set(address, byte, mode)` and `get(address)`, as in the data sheet's examples, and
-/// `busy()`.
+/// Compiles `body` together with functions for the EEPROM: `set(address, byte, mode)` and `get(address)`, as in the
+/// data sheet's examples, and `busy()`.
 pub fn program(body: &str) -> Image {
     c(&format!(
         "#include <avr/io.h>
@@ -36,7 +37,7 @@ pub fn program(body: &str) -> Image {
     ))
 }
 
-/// Returns a UNO after a number of milliseconds, whose main program runs these statements once.
+/// Returns a UNO that has run for a number of milliseconds and whose main program runs these statements once.
 fn run_once(body: &str, ms: u64) -> Uno {
     after_ms(
         ms,
@@ -97,7 +98,8 @@ fn registers_read_as_the_data_sheet_says() {
     }
 }
 
-/// Runs `sbi EEMPE`, `count` nops, `sbi EEPE`: there are `count + 2` cycles from one bit to the other.
+/// Returns a UNO that has set EEMPE and, `count + 2` cycles later, EEPE: the program runs `count` nops between the
+/// two instructions `sbi`.
 fn armed_then(count: usize) -> Uno {
     let nops = "nop\n".repeat(count);
     let source = format!(
@@ -125,7 +127,7 @@ fn eepe_must_be_set_within_four_cycles_after_eempe() {
 #[test]
 fn hardware_clears_eempe_after_four_cycles() {
     // "When EEMPE has been written to one by software, hardware clears the bit to zero after four clock cycles"
-    // (8.6.3). The bit is set from the end of the sbi on; the n-th `in` after it reads in the n-th cycle.
+    // (8.6.3). The bit is set at the end of the `sbi`; the n-th `in` after the `sbi` reads in the n-th cycle.
     let uno = run(
         "sbi EECR, EEMPE
          in r16, EECR $ in r17, EECR $ in r18, EECR $ in r19, EECR $ in r20, EECR
@@ -158,7 +160,7 @@ fn nothing_is_written_without_the_timed_sequence() {
 
 #[test]
 fn eepe_reads_one_for_as_long_as_table_8_1_says() {
-    // EEPM: 00 3.4 ms, 01 erase only 1.8 ms, 10 write only 1.8 ms.
+    // EEPM1:0 is 00 for erase and write (3.4 ms), 01 for erase only (1.8 ms), 10 for write only (1.8 ms).
     for (mode, duration, kind) in [
         (0, ATOMIC, EepromMode::EraseAndWrite),
         (1, SINGLE, EepromMode::EraseOnly),
@@ -217,13 +219,13 @@ fn the_cpu_halts_four_cycles_to_read_and_two_to_write() {
          cbi PORTB, 5",
         100,
     );
-    // sbi 2 + halt + cbi 2; the last EEPE is ignored.
+    // sbi 2 + halt + cbi 2. The last `sbi` of EEPE is ignored, so the CPU does not halt.
     assert_eq!(widths(&uno), [8, 6, 4]);
 }
 
 #[test]
 fn a_timer_is_on_time_though_the_eeprom_halts_the_cpu() {
-    // Timer1 counts while the CPU is halted, so its interrupt is not late.
+    // Timer1 counts while the CPU is halted, so halts do not accumulate to a delay of its interrupt.
     let image = program(
         "ISR(TIMER1_COMPA_vect) { GPIOR0 = TCNT1L; }
         int main(void) {
@@ -278,9 +280,9 @@ fn the_ready_interrupt_comes_at_once_and_again_after_one_instruction() {
          nop",
         400,
     );
-    // entry 4, sbi 2, reti 4, one instruction (nop 1, then rjmp 2)
+    // From mark to mark: reti 4, one instruction (nop 1, then rjmp 2), entry 4, sbi 2.
     let cycles = mark_cycles(&uno);
-    // jmp 3, ldi out ldi out 4, sei 1, nop 1, sbi 2: at 11; entry 4, sbi 2.
+    // The first mark: jmp 3, (ldi, out, ldi, out) 4, sei 1, nop 1, sbi 2, then entry 4, sbi 2.
     assert_eq!(cycles[0], 17);
     assert_eq!(cycles[1] - cycles[0], 4 + 1 + 4 + 2);
     assert_eq!(cycles[2] - cycles[1], 4 + 2 + 4 + 2);

@@ -5,7 +5,7 @@ use simulated_uno::avr_gcc::c;
 
 use super::{LED, after_ms};
 
-/// `:` length address type bytes checksum, as avr-objcopy has them.
+/// Formats a line of Intel HEX as avr-objcopy does: `:`, length, address, type, bytes, checksum.
 fn line(address: u16, kind: u8, bytes: &[u8]) -> String {
     let [high, low] = address.to_be_bytes();
     let mut all = vec![bytes.len() as u8, high, low, kind];

@@ -1,5 +1,4 @@
-//! Tests of the simulated UNO by programs whose timing follows from the data sheet by
-//! counting cycles.
+//! Tests of the simulated UNO with programs whose cycles can be counted by hand with the data sheet.
 
 use simulated_uno::avr_gcc::{assembler, c};
 use simulated_uno::{CYCLES_PER_MS, Call, Image, Pin, State, Uno, most_pins_high};
@@ -28,7 +27,8 @@ fn a_pulse_of_counted_instructions_has_its_counted_width() {
 
 #[test]
 fn unlike_stores_are_stamped_alike() {
-    // out (1 cycle) high, 2 nops, cbi (2 cycles) low: 4 cycles; then sts (2) high, 1 nop, out low: 2 cycles.
+    // First pulse: `out` (1 cycle) high, then 2 nops and `cbi` (2 cycles) low: 4 cycles. Second pulse: `sts` (2
+    // cycles) high, then 1 nop and `out` (1 cycle) low: 2 cycles.
     let image = assembler(
         "sbi DDRB, 5
          ldi r16, 0x20
@@ -72,7 +72,7 @@ fn pins_are_named_as_on_the_board_and_counted_when_high_together() {
 
 #[test]
 fn every_pin_of_every_port_is_recorded_under_its_arduino_number() {
-    // Port by port, each bit high and low: sbi and cbi take 2 cycles each.
+    // The program sets and clears each bit of each port; sbi and cbi take 2 cycles each.
     let mut source =
         String::from("ldi r16, 0xff $ out DDRD, r16 $ out DDRB, r16 $ out DDRC, r16\n");
     let ports = [("PORTD", 2..8, 0), ("PORTB", 0..6, 8), ("PORTC", 0..6, 14)];
@@ -220,7 +220,7 @@ fn a_call_is_timed_with_and_without_the_interrupts_in_it() {
     );
     let calls = calls_of_work(image, 10_000);
     assert_eq!(calls.len(), 1);
-    // ldi 1; 200 * (nop, dec, brne 2) - 1; ret 4
+    // ldi 1; 200 * (nop 1, dec 1, brne 2), the last brne 1; ret 4
     assert_eq!(calls[0].cycles(), 1 + 200 * 4 - 1 + 4);
     assert_eq!(calls[0].own_cycles(), calls[0].cycles());
 }
@@ -236,7 +236,8 @@ fn a_function_that_calls_itself_is_timed_to_its_own_return() {
         int main(void) { work(9); for (;;) {} }");
     let entry = image.function("work").expect("it is a function").address as u32;
     let mut uno = uno(image);
-    // Timing starts inside the first call; the nested calls all come from the same place.
+    // Timing starts inside the first call, so the outermost timed call is the one with depth 8. All nested calls
+    // have the same return address.
     assert!(uno.run_until(1000, 1, |uno| !uno.marks().is_empty()));
     let calls = uno.time_calls(entry, 20_000);
     assert_eq!(calls.len(), 1);
@@ -260,7 +261,7 @@ fn the_cycles_of_interrupts_in_a_timed_call_are_counted_separately() {
     let calls = calls_of_work(image, 20 * CYCLES_PER_MS);
     assert_eq!(calls.len(), 2);
     assert_eq!(calls[0].interrupted, 0);
-    // entry 4, jmp 3, nop, nop, reti 4 = 13 each
+    // Each interrupt takes entry 4, jmp 3, nop 1, nop 1, reti 4: 13 cycles.
     assert!(calls[1].interrupted >= 100 * 13 && calls[1].interrupted.is_multiple_of(13));
     assert_eq!(calls[1].own_cycles(), calls[0].cycles());
 }

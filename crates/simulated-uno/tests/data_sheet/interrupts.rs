@@ -1,11 +1,12 @@
-//! Tests of the simulated UNO's interrupts and Timer1, against counted cycles.
+//! Tests of the simulated UNO's interrupts and Timer1, with programs whose cycles are counted by hand.
 
 use simulated_uno::avr_gcc::{assembler, c};
 use simulated_uno::{Fidelity, Uno};
 
 use super::{BOTH, FIXED, LED, after, both_after, mark_cycles, marks};
 
-/// Program with Timer1 in CTC mode and a compare interrupt, whose handler toggles the LED by its first instruction.
+/// Program that sleeps, with Timer1 in CTC mode and a compare interrupt every 10 000 cycles. The handler's first
+/// instruction switches the LED on, and its second switches the LED off.
 const TICK: &str = "
     .org 0
         jmp start
@@ -35,8 +36,9 @@ const TICK: &str = "
 
 #[test]
 fn a_compare_interrupt_from_sleep_costs_what_the_data_sheet_says() {
-    // The counter starts with the last cycle of the `sts` to TCCR1B; the model starts it with the first. It matches
-    // 10 000 cycles later. Then 4 + 4 cycles to enter, 3 for the vector's jmp, 1 for out.
+    // On the chip, the counter starts with the last cycle of the `sts` to TCCR1B; the model starts it with the first
+    // cycle. The counter matches 10 000 cycles later. Then follow 4 + 4 cycles of interrupt entry from sleep, 3 for
+    // the vector's jmp, 1 for out.
     let mut uno = after(100_000, assembler(TICK));
     let starts: Vec<u64> = uno.pulses(LED).iter().map(|pulse| pulse.start).collect();
     assert!(starts.len() >= 9);
@@ -47,7 +49,7 @@ fn a_compare_interrupt_from_sleep_costs_what_the_data_sheet_says() {
         .collect();
     assert_eq!(starts, expected);
 
-    // Awake: entry 8, jmp 3, out, out, reti 4, rjmp 2, sleep 1 = 20 per tick.
+    // The CPU is awake for 20 cycles per interrupt: entry 8, jmp 3, out 1, out 1, reti 4, rjmp 2, sleep 1.
     let before = (uno.awake_cycles(), uno.cycle());
     uno.run_cycles(1_000_000);
     assert_eq!(uno.awake_cycles() - before.0, 20 * 100);
@@ -58,7 +60,7 @@ fn stock_simavr_enters_an_interrupt_in_no_time() {
     let mut uno = Uno::with_image(assembler(TICK), Fidelity::Stock);
     uno.run_cycles(100_000);
     let first = uno.pulses(LED)[0].start;
-    // Entry takes no time; waking from sleep takes a cycle; jmp 3, out 1.
+    // In stock simavr, entry takes no time and waking from sleep takes 1 cycle; then jmp 3, out 1.
     assert_eq!(first, 23 + 10_000 + 1 + 4);
 }
 
@@ -69,7 +71,7 @@ fn interrupts_are_counted_with_their_cycles() {
     assert_eq!(used.len(), 1);
     assert_eq!(simulated_uno::vector_name(used[0].vector), "TIMER1_COMPA");
     assert_eq!(used[0].entries, 9);
-    // entry 8, jmp 3, out, out, reti 4
+    // Each interrupt takes entry 8, jmp 3, out 1, out 1, reti 4.
     assert_eq!(used[0].cycles, 9 * 17);
 }
 
@@ -96,8 +98,8 @@ fn one_instruction_runs_after_sei_before_an_interrupt_that_waits() {
             "nop\n".repeat(count)
         )
     };
-    // The handler makes the pin an input. Only one instruction after `sei` runs before the handler, so the LED goes
-    // on only if `sbi PORTB, 5` is that instruction.
+    // The handler makes the pin an input. Only one instruction after `sei` runs before the handler, so the LED is
+    // switched on only if that instruction is `sbi PORTB, 5`.
     for (nops, up) in [(0, true), (1, false)] {
         let mut uno = Uno::with_image(assembler(&source(nops)), Fidelity::DataSheet);
         uno.run_until(200_000, 1, |uno| !uno.interrupts().is_empty());
@@ -146,7 +148,7 @@ fn enabling_an_interrupt_fires_its_flag_and_writing_a_flag_leaves_the_others() {
 
 #[test]
 fn an_interrupt_enabled_while_its_flag_is_up_comes_after_that_instruction() {
-    // sts 2, entry 4, jmp 3, out 1
+    // From the first `out` to the handler's: sts 2, entry 4, jmp 3, out 1.
     let image = assembler(
         "jmp start
          .org 0x34                  ; TIMER1_OVF
@@ -170,8 +172,8 @@ fn an_interrupt_enabled_while_its_flag_is_up_comes_after_that_instruction() {
 
 #[test]
 fn the_high_byte_of_a_16_bit_register_goes_through_the_shared_temp_byte() {
-    // The high byte of OCR1A, then both bytes of OCR1B, then the low byte of OCR1A: the real chip stores OCR1B's
-    // high byte in both.
+    // The program writes the high byte of OCR1A, then both bytes of OCR1B, then the low byte of OCR1A. A write to a
+    // high byte only fills TEMP, so both registers get the high byte that was written for OCR1B.
     let image = c("#include <avr/io.h>
         int main(void) {
             OCR1AH = 0x12;

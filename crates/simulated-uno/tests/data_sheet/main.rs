@@ -1,5 +1,5 @@
-//! Tests of the simulated UNO against the data sheet, part by part, with programs whose expected results follow by
-//! counting cycles.
+//! Tests of the simulated UNO against the data sheet, one module for each part of the chip, with programs whose
+//! cycles can be counted by hand.
 
 mod adc;
 mod brown_out;
@@ -29,7 +29,7 @@ fn both_after(cycles: u64, image: &Image) -> [Uno; 2] {
     })
 }
 
-/// Failure message for a correction that simavr no longer needs.
+/// Failure message of a test that stock simavr has an error. The test fails if simavr no longer needs the correction.
 const FIXED: &str = "stock simavr now follows the data sheet here: drop the correction";
 
 /// Returns a UNO with this program, corrected by the data sheet, at power-on.
@@ -37,39 +37,39 @@ fn uno(image: Image) -> Uno {
     Uno::with_image(image, Fidelity::DataSheet)
 }
 
-/// Returns the UNO of [`uno`] after a number of cycles.
+/// Returns a UNO with this program, corrected by the data sheet, after a number of cycles.
 fn after(cycles: u64, image: Image) -> Uno {
     let mut uno = uno(image);
     uno.run_cycles(cycles);
     uno
 }
 
-/// Returns the UNO of [`uno`] after a number of milliseconds.
+/// Returns a UNO with this program, corrected by the data sheet, after a number of milliseconds.
 fn after_ms(ms: u64, image: Image) -> Uno {
     after(ms * CYCLES_PER_MS, image)
 }
 
-/// The bytes that the program has written to GPIOR0.
+/// Returns the bytes that the program has written to GPIOR0.
 fn marks(uno: &Uno) -> Vec<u8> {
     uno.marks().iter().map(|mark| mark.value).collect()
 }
 
-/// The cycles at which the program wrote to GPIOR0.
+/// Returns the cycles at which the program has written to GPIOR0.
 fn mark_cycles(uno: &Uno) -> Vec<u64> {
     uno.marks().iter().map(|mark| mark.cycle).collect()
 }
 
-/// Returns the number of cycles between each two consecutive events.
+/// Returns the number of cycles from each event to the next.
 fn distances(cycles: &[u64]) -> Vec<u64> {
     cycles.windows(2).map(|pair| pair[1] - pair[0]).collect()
 }
 
-/// The widths of the pulses on the LED's pin.
+/// Returns the widths of the pulses on the LED's pin, cycles.
 fn widths(uno: &Uno) -> Vec<u64> {
     uno.pulses(LED).iter().map(|pulse| pulse.width).collect()
 }
 
-/// The edges of all pins: each pin's number, and true for a rising edge.
+/// Returns the edges of all pins: for each edge the pin's Arduino number, and true if the edge is rising.
 fn edges(uno: &Uno) -> Vec<(u8, bool)> {
     let edges = uno.edges();
     edges
@@ -78,12 +78,12 @@ fn edges(uno: &Uno) -> Vec<(u8, bool)> {
         .collect()
 }
 
-/// The bytes that the program has transmitted.
+/// Returns the bytes that the program has transmitted on the serial line.
 fn text(uno: &Uno) -> Vec<u8> {
     uno.transmitted().iter().map(|byte| byte.byte).collect()
 }
 
-/// The causes of all resets.
+/// Returns the causes of all starts of the program, the first power-on included.
 fn causes(uno: &Uno) -> Vec<ResetCause> {
     uno.reset_events().iter().map(|reset| reset.cause).collect()
 }

@@ -5,7 +5,8 @@ use simulated_uno::{EEPROM_SIZE, PowerCut, ResetCause, State, Uno};
 use super::eeprom::{ATOMIC, program};
 use super::{causes, marks, uno};
 
-/// Writes 0x35 over 0xa6 at address 0, then 0x5c at address 1.
+/// Program that writes 0x35 over 0xa6 at address 0, then 0x5c at address 1. If address 0 does not contain 0xa6, as
+/// after a power cut, the program only marks the byte that it contains.
 const TWO_BYTES: &str = "int main(void) {
     if (get(0) != 0xa6) { GPIOR0 = get(0); for (;;) {} }
     set(0, 0x35, 0); set(1, 0x5c, 0); while (busy()) {}

@@ -14,12 +14,12 @@ fn program_once(body: &str) -> Image {
     ))
 }
 
-/// Compiles a program that shows MCUSR at each start and does not change it.
+/// Compiles a program that marks the value of MCUSR at each start and does not change MCUSR.
 fn show_cause() -> Image {
     program_once("GPIOR0 = MCUSR;")
 }
 
-/// Pulls the RESET pin, then runs for a millisecond.
+/// Pulls the RESET pin low for an instant, then runs for a millisecond.
 fn reset(uno: &mut Uno) {
     uno.reset();
     uno.run_ms(1);
@@ -27,8 +27,8 @@ fn reset(uno: &mut Uno) {
 
 #[test]
 fn mcusr_gathers_the_causes_until_power_on() {
-    // "The bit is reset by a Power-on Reset, or by writing a logic zero to the flag" (11.9.1): the data sheet says
-    // this of EXTRF, BORF and WDRF.
+    // "The bit is reset by a Power-on Reset, or by writing a logic zero to the flag" (11.9.1, of each of the bits
+    // EXTRF, BORF and WDRF).
     let mut uno = after_ms(1, show_cause());
     reset(&mut uno);
     uno.set_supply_mv(2500.0);
@@ -157,7 +157,8 @@ fn a_reset_makes_every_pin_an_input_and_ends_its_pulse() {
 
 #[test]
 fn a_timer_is_stopped_after_a_reset() {
-    // CTC with a match every 1000 cycles; after the reset the program only reads.
+    // Timer1 has a compare match every 1000 cycles. After the reset the program does not start Timer1, and only
+    // reads its registers.
     let image = program_once(
         "if (MCUSR & 2) {
             OCR1A = 77; GPIOR0 = TCNT1L;
@@ -227,7 +228,7 @@ fn a_serial_line_goes_on_after_a_reset() {
     uno.run_cycles(3 * 1389 + 700);
     uno.reset();
     uno.run_ms(3);
-    // At the reset, the UNO was sending `c` back and receiving `d`.
+    // At the reset, the UNO is sending `c` back and receiving `d`, so both are lost.
     assert_eq!(text(&uno), b"abefgh");
 }
 

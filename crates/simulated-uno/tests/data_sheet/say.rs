@@ -5,7 +5,7 @@ use simulated_uno::{State, Uno};
 
 use super::{BOTH, after_ms, uno};
 
-/// Program at 115 200 baud that answers each line in capitals. It ignores `x` and halts at `!`.
+/// Program at 115 200 baud that answers each line with the same line in capitals. It ignores `x` and halts at `!`.
 const CAPITALS: &str = r"
     #include <avr/io.h>
     #include <avr/sleep.h>
@@ -36,7 +36,7 @@ fn an_answer_is_the_next_line_from_the_uno_without_its_end() {
 
 #[test]
 fn a_second_of_silence_in_the_chips_time_counts_as_no_answer() {
-    // The program never reads the line, so there is no answer.
+    // The program never reads the serial line, so it does not answer.
     let mut uno = uno(c("int main(void) { for (;;) {} }"));
     assert_eq!(uno.say("anybody"), None);
     assert!((1000.0..1001.0).contains(&uno.ms()), "{}", uno.ms());

@@ -5,12 +5,13 @@ use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, Uno};
 
 use super::{BOTH, after, after_ms, both_after, distances, marks, text, uno};
 
-/// Cycles of a 10-bit frame at 115 200 baud, at the sender's exact rate.
+/// Cycles of a 10-bit frame at exactly 115 200 baud, the sender's rate.
 const FRAME: f64 = 10.0 * 16_000_000.0 / 115_200.0;
 /// Cycles of a 10-bit frame that the UNO sends with UBRR = 16 and U2X: 136 cycles for each bit.
 const UNO_FRAME: u64 = 10 * 17 * 8;
 
-/// Compiles a program at 115 200 baud that runs `body` in an endless loop.
+/// Compiles a program at 115 200 baud that runs `body` in an endless loop; `get()` receives a byte, `put()` sends
+/// one.
 fn program(body: &str) -> Image {
     c(&format!(
         "#include <avr/io.h>
@@ -46,7 +47,7 @@ fn an_echo_arrives_a_frame_after_its_byte() {
     uno.send(b"x");
     uno.run_ms(1);
     let echo = uno.transmitted()[0].cycle - start;
-    // Received in the middle of the stop bit; the polling loop takes up to about 20 cycles.
+    // The byte is received in the middle of its stop bit; the polling loop takes up to about 20 cycles.
     let earliest = (0.95 * FRAME) as u64 + UNO_FRAME;
     assert!(
         (earliest..earliest + 30).contains(&echo),
@@ -60,7 +61,7 @@ fn bytes_go_out_back_to_back_at_ten_bits_each() {
     uno.run_ms(10);
     let stamps: Vec<u64> = uno.transmitted().iter().map(|byte| byte.cycle).collect();
     assert!(stamps.len() > 100);
-    // The timer event may come in mid-instruction; that error does not accumulate.
+    // A frame may end in the middle of an instruction; this does not delay the following frames.
     assert!(
         distances(&stamps)
             .iter()
@@ -87,7 +88,7 @@ fn two_bytes_wait_and_a_third_in_the_shift_register() {
     for (sent, kept, lost) in [
         ("abc", &b"abc"[..], 0),
         ("abcd", b"abd", 1),   // c is overwritten by d
-        ("abcdef", b"abf", 3), // then d by e, e by f
+        ("abcdef", b"abf", 3), // then d is overwritten by e, and e by f
     ] {
         let mut uno = after(3200, program(late));
         uno.send(sent.as_bytes());
@@ -158,7 +159,8 @@ fn a_byte_written_while_the_transmitter_is_full_is_ignored() {
     assert_eq!(text(&uno), b"abd");
 }
 
-/// Returns the first byte that a program shows after another byte was sent at this rate.
+/// Sends a byte at this baud rate to a program that runs `body` in a loop, and returns the first byte that the
+/// program writes to GPIOR0.
 fn shown_at(baud: f64, byte: u8, body: &str) -> u8 {
     let mut uno = uno(program(body));
     uno.set_baud(baud);
@@ -180,16 +182,17 @@ fn a_wrong_baud_rate_is_a_framing_error() {
 fn at_a_wrong_baud_rate_other_bytes_are_read() {
     let read = |baud| shown_at(baud, b'0', "GPIOR0 = get();");
     assert_eq!(read(115_200.0), b'0');
-    // '0' is 0b0011_0000. Until the UNO has taken its eight samples, a sender that is half as fast has sent its
-    // start bit and four data bits, all 0: the samples are at 0.73, 1.22, ... 4.16 bits of the sender.
+    // '0' is 0b0011_0000. The UNO takes its eight samples while a sender with half its baud rate sends its start bit
+    // and four data bits, all 0: the samples are at 0.73, 1.22, ... 4.16 bits of the sender.
     assert_eq!(read(57_600.0), 0);
-    // Twice as fast: sampled at 2.9 (0), 4.9 (0), 6.9 (1), 8.8 (0) and then on the idle line (1).
+    // With a sender at twice the baud rate, the samples are at 2.9 (0), 4.9 (0), 6.9 (1), 8.8 (0) bits of the
+    // sender, and then on the idle line (1).
     assert_eq!(read(230_400.0), 0b1111_0100);
 }
 
 #[test]
 fn a_low_stop_bit_is_a_framing_error_of_that_byte_alone() {
-    // The flag is valid until UDR0 is read, so the program reads it first (data sheet 20.7.4).
+    // FE0 is valid until UDR0 is read, so the program reads UCSR0A first (data sheet 20.7.4).
     let body = "unsigned char status; while (!((status = UCSR0A) & 0x80)) {}
                 GPIOR0 = status & 0x10; GPIOR0 = UDR0;";
     for fidelity in BOTH {
@@ -207,7 +210,8 @@ fn a_low_stop_bit_is_a_framing_error_of_that_byte_alone() {
 
 #[test]
 fn a_framing_error_waits_with_its_byte_and_goes_with_it() {
-    // The program reads nothing for 2 ms; then it shows the status before each byte and after the last.
+    // The program reads nothing for 2 ms; then it marks the status before it reads each byte, and after the last
+    // byte.
     let body = "_delay_ms(2);
                 for (unsigned char i = 0; i < 3; i++) { GPIOR0 = UCSR0A & 0x90; (void)UDR0; }
                 GPIOR0 = UCSR0A & 0x90;";
@@ -261,7 +265,7 @@ fn bytes_sent_to_a_sleeping_board_arrive_on_time_however_the_run_is_cut() {
     let whole = run(1);
     assert_eq!(whole.len(), 5);
     let arrival = 12_345 + (0.95 * FRAME).ceil() as u64;
-    // entry from sleep 8, jmp 3, a few pushes and the read
+    // From arrival to mark: entry from sleep 8, jmp 3, a few pushes and the read of UDR0.
     assert!(
         (arrival..arrival + 40).contains(&whole[0].cycle),
         "{whole:?}"

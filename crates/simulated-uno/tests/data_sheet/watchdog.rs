@@ -5,17 +5,17 @@ use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, ResetCause, State, Uno};
 
 use super::{FIXED, after, after_ms, distances, mark_cycles, marks, uno};
 
-/// 2 048 cycles of the 128 kHz oscillator: the shortest time-out, in CPU cycles.
+/// The shortest time-out, 2 048 cycles of the 128 kHz oscillator, in CPU cycles.
 const MIN_TIMEOUT: u64 = 16 * CYCLES_PER_MS;
 
-/// Returns the cycles of the resets by the watchdog.
+/// Returns the cycles at which the watchdog has reset the chip.
 fn watchdog_resets(uno: &Uno) -> Vec<u64> {
     let resets = uno.reset_events().into_iter();
     let bites = resets.filter(|reset| reset.cause == ResetCause::Watchdog);
     bites.map(|reset| reset.cycle).collect()
 }
 
-/// Compiles a program in which `set(value)` runs the timed sequence and writes `value` to WDTCSR.
+/// Compiles a program in which the macro `set(value)` runs the timed sequence of 11.8.2 and writes `value` to WDTCSR.
 fn program(body: &str) -> Image {
     c(&format!(
         "#include <avr/io.h>
@@ -33,7 +33,8 @@ fn run(body: &str, ms: u64) -> Uno {
     after_ms(ms, program(body))
 }
 
-/// Returns a UNO whose main program clears MCUSR and then runs these statements once.
+/// Returns a UNO that has run for a number of milliseconds and whose main program clears MCUSR and then runs these
+/// statements once.
 fn run_once(body: &str, ms: u64) -> Uno {
     run(
         &format!("int main(void) {{ MCUSR = 0; {body} for (;;) {{}} }}"),
@@ -41,7 +42,7 @@ fn run_once(body: &str, ms: u64) -> Uno {
     )
 }
 
-/// Returns the number of cycles from a write to GPIOR0 to the first reset by the watchdog.
+/// Returns the number of cycles from the program's write number `mark` to GPIOR0 to the first reset by the watchdog.
 fn cycles_to_reset(uno: &Uno, mark: usize) -> u64 {
     watchdog_resets(uno)[0] - uno.marks()[mark].cycle
 }
@@ -51,7 +52,7 @@ fn every_prescaler_gives_the_time_out_of_table_11_2() {
     // "WDP3:0 0 to 9: 2K to 1024K cycles, 16 ms to 8.0 s" at 128 kHz.
     for wdp in 0..10u8 {
         let value = 0x08 | (wdp & 7) | (wdp & 8) << 2;
-        // The program switches the watchdog off after one reset, so that no second one follows.
+        // The program switches the watchdog off after one reset, so that no second reset follows.
         let body = format!(
             "int main(void) {{
                 if (MCUSR & 8) {{ MCUSR = 0; set(0); for (;;) {{}} }}
@@ -98,7 +99,8 @@ fn the_time_runs_from_the_last_wdr_or_from_where_the_watchdog_was_switched_on() 
     }
 }
 
-/// Starts the watchdog with 16 ms; then sets WDCE and WDE, waits `count` nops, and writes 0 to WDTCSR.
+/// Returns a UNO after 17 ms of a program that starts the watchdog with 16 ms, sets WDCE and WDE, and writes 0 to
+/// WDTCSR after `count` nops.
 fn off_after(count: usize) -> Uno {
     let source = format!(
         "ldi r16, 0 $ out MCUSR, r16

@@ -1,12 +1,12 @@
-//! Generated mistakes: all places of the code where an operator, a number or a call can be changed, and a random
-//! sample of them.
+//! Generated mistakes: the changes of every operator, number and call of the firmware's code, shuffled for a random
+//! sample.
 
 use fastrand::Rng;
 
 use super::list::Mutant;
 
-/// Files that only produce the console's text. All other files of the core, of the board's code and of the pulses
-/// can move a servo or change a saved value.
+/// Starts of the paths, in the core, of files that only produce the console's text. All other files of the core, of
+/// the board's code and of the pulses can move a servo or change a saved value.
 const TEXT: [&str; 8] = [
     "answer.rs",
     "console.rs",
@@ -18,7 +18,7 @@ const TEXT: [&str; 8] = [
     "word.rs",
 ];
 
-/// Files that do not run on the chip, or that hold tables of another program.
+/// Parts of the paths of files that do not run on the chip, or that contain tables of another program.
 const HOST_ONLY: [&str; 7] = [
     "tests",
     "finder/misread.rs",
@@ -136,7 +136,7 @@ fn changes(line: &str) -> Vec<(String, String)> {
     changes
 }
 
-/// Returns the decimal numbers of a line of code, each with its index.
+/// Returns the decimal numbers in a line of code, each with its byte offset.
 fn numbers(code: &str) -> Vec<(usize, &str)> {
     let mut found = Vec::new();
     let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '.';

@@ -1,15 +1,16 @@
 //! The list of deliberate mistakes; the head of `mutants.txt` describes its format.
 
-/// A mistake to be made in one file.
+/// A mistake that the tests should notice: a replacement of text in one file.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Mutant {
     /// The file's path from the root of the tree.
     pub file: String,
     /// The description of the mistake.
     pub description: String,
-    /// Part of the names of the tests that are run first.
+    /// Part of the names of the tests that run first; `None` to run all tests at once.
     pub test: Option<String>,
-    /// The package whose own tests must notice the mistake, for code that also runs on the host.
+    /// The package whose own tests must notice the mistake, for code that also runs on the host; `None` for code that
+    /// runs only in the firmware.
     pub package: Option<String>,
     /// True if the mistake was generated.
     pub is_fresh: bool,
@@ -17,7 +18,7 @@ pub struct Mutant {
     pub line: usize,
     /// The correct text, which is replaced.
     pub old: String,
-    /// The text that replaces it.
+    /// The text that replaces the correct text.
     pub new: String,
 }
 
@@ -38,7 +39,7 @@ impl Mutant {
     /// Returns the file's text with the mistake in it.
     ///
     /// # Errors
-    /// Fails if the old text is not in the file, or more than once.
+    /// Fails if the old text does not occur in the file, or more than once.
     pub fn apply(&self, text: &str) -> Result<String, String> {
         match text.matches(&self.old).count() {
             1 => Ok(text.replace(&self.old, &self.new)),
@@ -95,7 +96,7 @@ pub fn read(list: &str) -> Result<Vec<Mutant>, String> {
     Ok(mutants)
 }
 
-/// Appends a line; line feeds separate the lines.
+/// Appends a line to a text, after a line feed unless the text is empty.
 fn append_line(text: &mut String, line: &str) {
     if !text.is_empty() {
         text.push('\n');

@@ -1,17 +1,17 @@
 //! Mutation tests of the firmware, `make mutants`: makes the mistakes of `host-tests/mutants.txt` in a copy of the
 //! tree, one at a time, and reports those that no test notices.
 //!
-//! Most of the listed mistakes are in the board's code. It runs only in the firmware, so no tool for host crates
-//! reaches it. Mistakes in the core must be noticed by the tests with trouble at random moments in the running
-//! image or, if an entry names a package, by that package's own tests. The tests are built once, from the unchanged
-//! tree, and get each mistaken firmware by LIZARD_ELF.
+//! Most of the listed mistakes are in the board's code, which runs only in the firmware, so no mutation testing tool
+//! for host crates reaches it. A mistake must be noticed by the tests of the running firmware or, if its entry names
+//! a package, by that package's own tests. The tests of the firmware are built once, from the unchanged tree, and get
+//! each firmware with a mistake by the environment variable LIZARD_ELF.
 //!
-//! Run it from the folder `crates`. Arguments: parts of a file's name or of a mistake's description. It tries the
-//! entries that contain one of them, or all entries if there are no arguments.
+//! Run the program from the folder `crates`. Arguments: parts of a file's name or of a mistake's description. The
+//! program tries the entries that contain at least one of them, or all entries if there are no arguments.
 //!
-//! With SAMPLE=60 it makes that many generated mistakes ([`fresh`]) instead, drawn by SEED from the whole code of
-//! the firmware, and prints the rate at which tests notice them, with its interval. A mistake in the core is tried
-//! first on the core's own tests, then on the model checker, then in the running image.
+//! With SAMPLE=60 the program tries 60 generated mistakes ([`fresh`]) instead, drawn by SEED from the whole code of
+//! the firmware, and prints the rate at which tests notice them, with its confidence interval. A mistake in the core
+//! is tried first on the core's own tests, then on the model checker, then in the running firmware.
 
 mod fresh;
 mod list;
@@ -27,8 +27,8 @@ use list::Mutant;
 /// Time after which the tests count as hanging, s.
 const TIMEOUT: u32 = 1_800;
 
-/// Processor time after which a test program counts as hanging, s. A program takes at most a minute and a half of
-/// it, whatever else runs on the machine.
+/// Processor time after which a test program counts as hanging, s. A program that does not hang takes at most 90 s of
+/// processor time, whatever else runs on the machine.
 const CPU_TIMEOUT: u32 = 240;
 
 /// The root of the repository.
@@ -36,7 +36,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// The outcome of the tests of a mistake.
+/// The outcome of the tests with a mistake in the code.
 enum Outcome {
     Caught(String),
     Unnoticed,
@@ -81,7 +81,8 @@ fn sample(parts: &[String], count: usize, seed: u64) -> Result<usize, String> {
     if !matches!(scratch.judge(&unchanged)?, Outcome::Unnoticed) {
         return Err("a test fails without any mistake".into());
     }
-    // Numbers of noticed and of tried mistakes: in code that moves a servo or a saved value, and in other code.
+    // The numbers of noticed and of tried mistakes, first for code that affects a servo or a saved value, then for
+    // code that only produces text.
     let mut tally = [[0; 2]; 2];
     for mutant in fresh::shuffle(mutants, seed) {
         let [moving, rest] = tally;
@@ -209,7 +210,8 @@ impl Scratch {
         Ok(scratch)
     }
 
-    /// Writes a file of the copy, unless it already has these bytes: cargo rebuilds files with a new time.
+    /// Writes a file of the copy, unless the file already has these bytes: cargo would rebuild a file with a new
+    /// time.
     fn write(&self, name: &str, bytes: &[u8]) -> Result<(), String> {
         let path = self.folder.join("tree").join(name);
         if fs::read(&path).is_ok_and(|before| before == bytes) {
@@ -237,7 +239,7 @@ impl Scratch {
 
     /// Makes a mistake, runs the tests and undoes the mistake.
     fn judge(&self, mutant: &Mutant) -> Result<Outcome, String> {
-        // Reads the copy's text, since the original tree may be edited meanwhile.
+        // Reads the text from the copy, since the original tree may be edited during the run.
         let right = text(&self.folder.join("tree").join(&mutant.file))?;
         self.write(&mutant.file, mutant.apply(&right)?.as_bytes())?;
         let outcome = match &mutant.package {
@@ -265,8 +267,8 @@ impl Scratch {
         Ok(Outcome::Unnoticed)
     }
 
-    /// Runs the tests of a package of the copy: those that should notice the mistake, then all. For a generated
-    /// mistake, also those of the model checker and of the image.
+    /// Runs the tests of a package of the copy: first those that should notice the mistake, then all. For a generated
+    /// mistake, also runs the tests of the model checker and of the running firmware.
     fn in_its_package(&self, package: &str, mutant: &Mutant) -> Result<Outcome, String> {
         if !self
             .cargo_test(package, &["--no-run"])?
@@ -300,7 +302,8 @@ impl Scratch {
         }
     }
 
-    /// Runs `cargo test` on a package of the copy.
+    /// Runs `cargo test` on a package of the copy. Returns true if the tests passed, and their output; `None` if they
+    /// do not end.
     fn cargo_test(
         &self,
         package: &str,
@@ -338,7 +341,7 @@ fn tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, String> {
         return Ok(None);
     };
     if !printed.contains("test result:") {
-        // A test was started, and the limit of its processor time ended it.
+        // The limit of processor time has ended a test that had started.
         if printed.contains("running ") {
             return Ok(None);
         }
@@ -347,14 +350,14 @@ fn tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, String> {
     Ok(Some(failures(&printed)))
 }
 
-/// Runs `cargo test` in a folder. Returns true if the tests passed, and their output; `None` if they do not end
+/// Runs `cargo test` in a folder. Returns true if the tests passed, and their output; `None` if the tests do not end
 /// within [`TIMEOUT`].
 fn run_limited(
     folder: &Path,
     arguments: &[&str],
     variables: &[(&str, &OsStr)],
 ) -> Result<Option<(bool, String)>, String> {
-    /// The exit code of `timeout`, which also ends the tests that cargo has started.
+    /// The exit code of `timeout` after a time-out. `timeout` also ends the tests that cargo has started.
     const TOO_LONG: i32 = 124;
     let run = Command::new("prlimit")
         .arg(format!("--cpu={CPU_TIMEOUT}"))

@@ -1,8 +1,9 @@
-//! Generator of random robots for `make other-robots`: writes files like robot.toml, on each of which the image's
-//! tests run.
+//! Generator of random robots for `make other-robots`: writes files like robot.toml. The tests of the running
+//! firmware are repeated with each of these robots.
 //!
-//! Arguments: a folder, a seed, a count. The same seed writes the same robots. If the count is ten or more, the
-//! robots must include each feature that is too rare in the files of `robots/`; otherwise none is written.
+//! Arguments: a folder, a seed, a count. The same seed writes the same robots. If the count is ten or more, each
+//! feature that is rare in the files of `robots/` must occur in one of the robots; otherwise the program fails and
+//! writes no file.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -40,7 +41,7 @@ fn run(arguments: &[String]) -> Result<(), String> {
     let robots: Vec<(String, Robot)> = (0..count)
         .map(|n| random_robot(&mut Rng::with_seed(seed.wrapping_mul(1_000_003) + 1000 + n)))
         .collect();
-    // Few robots cannot have all features.
+    // A few random robots are unlikely to have all rare features.
     if count >= 10 {
         has_all(&robots)?;
     }
@@ -53,10 +54,10 @@ fn run(arguments: &[String]) -> Result<(), String> {
     Ok(())
 }
 
-/// A property that a robot may have.
+/// A test whether a robot has a feature.
 type Has = fn(&Robot) -> bool;
 
-/// Checks that the robots have all rare features. The error names a missing one.
+/// Checks that each rare feature occurs in one of the robots. The error names the first missing feature.
 fn has_all(robots: &[(String, Robot)]) -> Result<(), String> {
     let of_interest: [(&str, Has); 5] = [
         ("a servo that is reversed", |robot| {

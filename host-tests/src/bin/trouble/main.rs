@@ -1,8 +1,8 @@
-//! `make trouble`: plays many random scenarios of trouble on the simulated UNO. It prints
+//! `make trouble`: plays many random scenarios of trouble on the simulated UNO. Prints
 //! progress, a summary by activity, and the first failing scenarios as scripts.
 //!
-//! SEED and COUNT choose the scenarios; ONLY plays just the one with this number. `make` runs
-//! it in the folder `crates`.
+//! The environment variables SEED and COUNT choose the scenarios; ONLY plays only the scenario with this number.
+//! `make` runs the program in the folder `crates`.
 
 use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
@@ -68,7 +68,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Plays one scenario, and prints its events and the broken rules.
+/// Plays one scenario, and prints its events and the rules that they break.
 fn play_scenario(image: &Image, seed: u64, number: u64) -> ExitCode {
     let scenario = Scenario::of(seed, number, patrolling());
     print!("{scenario}");
@@ -77,7 +77,7 @@ fn play_scenario(image: &Image, seed: u64, number: u64) -> ExitCode {
     for (at, event) in events(&record) {
         let is_reported = match event {
             Event::Byte | Event::Pass => false,
-            // Only a servo's first pulse after more than 30 ms without one.
+            // Of a servo's pulses, only the first after more than 30 ms without a pulse is printed.
             Event::Pulse(pulse) => {
                 let before = std::mem::replace(&mut last[pulse.servo], at);
                 at - before > 30 * MS

@@ -37,7 +37,8 @@ impl Script<'_> {
         }
     }
 
-    /// Stalls the main loop for 1 to 300 ms and waits as long: a hang may end 250 ms after it began.
+    /// Stalls the main loop for 1 to 300 ms and waits for as long: the watchdog may end a hang 250 ms after its
+    /// beginning.
     fn add_stall(&mut self) {
         let cycles = self.rng.u64(MS..300 * MS);
         self.steps.push(Step::Stall(cycles));
@@ -57,13 +58,13 @@ impl Script<'_> {
         self.steps.push(Step::Supply(5_000));
     }
 
-    /// Returns the supply's minimum for writing, moving and pulses, mV.
+    /// Returns the supply's minima for writing the EEPROM, for moving and for pulses, mV.
     fn levels(&self) -> [u16; 3] {
         let board = self.robot.supplies().board;
         board.map(|volts| (1_000.0 * volts) as u16)
     }
 
-    /// Lowers the supply for a while, and then briefly even more.
+    /// Lowers the supply for a while, then briefly to a second, mostly lower level, and restores it.
     fn add_sag(&mut self) {
         let [slow, stop, rest] = self.levels();
         let first = self.rng.u16(stop - 50..slow + 50);
@@ -77,7 +78,7 @@ impl Script<'_> {
         self.steps.push(Step::Supply(5_000));
     }
 
-    /// Lowers the supply for a long time to a level that allows moving but no writing, and orders both.
+    /// Lowers the supply for a long time to a level that allows moving but not writing the EEPROM, and orders both.
     fn add_low_supply(&mut self) {
         let [slow, stop, _] = self.levels();
         let mv = self.rng.u16(stop + 50..slow - 50);
@@ -91,7 +92,7 @@ impl Script<'_> {
         self.steps.push(Step::Supply(5_000));
     }
 
-    /// Adds another trouble while the main loop is stalled.
+    /// Stalls the main loop, and adds a reset or a drop of the supply during the stall.
     fn add_stall_with_trouble(&mut self) {
         let ms = self.rng.u64(20..300);
         self.steps.push(Step::Stall(ms * MS));
@@ -128,8 +129,8 @@ impl Script<'_> {
         self.steps.push(Step::Supply(5_000));
     }
 
-    /// Adds a supply that three servos pull down, for long enough to detect a robot that never stops trying. The
-    /// servos start after an order, a reset, or both.
+    /// Adds a supply that falls whenever three servos have pulses, for long enough to detect a robot that starts its
+    /// servos again and again. The servos start after an order or a reset.
     fn add_weak_supply(&mut self, activity: Activity) {
         self.steps.push(Step::Weak(true));
         match activity {

@@ -1,4 +1,4 @@
-//! Rules about the robot's inner state, or about its future, which is computed on a clone.
+//! Checks of rules about the robot's internal state, or about its future, which is computed on a clone.
 
 use lizard_core::console::command::effect;
 use lizard_core::console::word::Effect;
@@ -17,20 +17,20 @@ use crate::fingerprint;
 /// Rounding error at each end of a frame, cycles.
 const ROUNDING: u16 = 2;
 
-/// Frames within which any motion of this robot ends.
+/// Number of frames within which any motion of this robot ends.
 const MOTION_FRAMES: u32 = 160;
 
 /// Lines that start a gait or a routine for a limited time, which ends within [`MOTION_FRAMES`]
 /// even at half the pace.
 const COUNTED: [&str; 3] = ["walk 1", "trot 2", "round 1"];
 
-/// Frames after which a contact is debounced for certain.
+/// Number of frames after which a contact is certain to be debounced.
 const DEBOUNCED: u8 = 5;
 
-/// Time in which a supply is measured often enough to be believed.
+/// Time after which a supply has been measured often enough for the robot to react to it.
 const SUPPLY_SETTLING: Time = 14 * FRAME;
 
-/// The observer's limits for a robot.
+/// Returns the observer's limits for a robot.
 pub(super) fn limits(robot: &Robot) -> Limits {
     let board = robot.supplies().board;
     Limits {
@@ -51,8 +51,8 @@ impl World {
     pub(super) fn answer(&mut self, line: &str, text: &str) -> Verdict {
         let effect = effect(line, &self.robot());
         let is_done = text.starts_with("ok ");
-        // A late edge that main has yet to see, because its last frame still waits to be
-        // played, stops the robot after the order.
+        // Main has not seen a late edge yet if its last frame still waits to be played. The
+        // edge then stops the robot after the order.
         let is_late = self.observer.is_unreported() && self.running.board.late > 0;
         self.order(effect, Some(is_done));
         if is_done && effect == Effect::Calibrates {
@@ -102,7 +102,7 @@ impl World {
         }
     }
 
-    /// Runs a clone until everything that the answers so far have promised is due.
+    /// Runs a clone until all effects that the answers have promised are due, and checks them.
     pub(super) fn look_ahead(&mut self) -> Verdict {
         self.observer.verdict()?;
         if let Some(time) = self.observer.due_in() {
@@ -136,8 +136,7 @@ impl World {
         Ok(())
     }
 
-    /// Closes or opens a contact. Unless a routine is under way, the robot must go on as if nothing
-    /// had happened.
+    /// Closes or opens a contact. Unless a routine runs, checks that the contact has no effect on the robot.
     pub(super) fn contact(&mut self, pin: u8, closed: bool) -> Verdict {
         let mut without = self.running.clone();
         let others = self.running.board.closed & !(1 << pin);
@@ -200,7 +199,7 @@ impl World {
         Ok(())
     }
 
-    /// Judges the pulses of a frame, in which main ran or not.
+    /// Judges the pulses of a frame. `main_ran` is false if main was stalled in it.
     pub(super) fn pulses(&mut self, main_ran: bool) -> Verdict {
         self.observer.limits.keeps_memory = !self.running.board.memory.is_worn;
         let widths = self.running.board.started_pulses().0.map(|width| width.0);

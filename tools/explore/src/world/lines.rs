@@ -1,4 +1,4 @@
-//! The lines that are sent to the robot, and those that it prints.
+//! The lines that the search sends to the robot, and the lines that the robot prints.
 
 use lizard_core::console::command::{effect, parse};
 use lizard_core::step::Step;
@@ -38,7 +38,7 @@ impl World {
         self.listen(self.now)
     }
 
-    /// Sends a line at another rate than that of the robot's receiver.
+    /// Sends a line at a rate other than the rate of the robot's receiver, and checks that the robot ignores it.
     pub(super) fn say_at_another_rate(&mut self) -> Verdict {
         let before = self.settled();
         self.running.board.send(&UNREADABLE);
@@ -75,7 +75,7 @@ impl World {
         broken(Rule::Found, format!("at {} baud", self.sender.baud()))
     }
 
-    /// A clone of the robot that has printed all its output.
+    /// Returns a clone of the robot that has printed all its output.
     fn settled(&self) -> Running {
         let mut settled = self.running.clone();
         settled.board.transmitter.text.clear();
@@ -83,8 +83,8 @@ impl World {
         settled
     }
 
-    /// Judges the answer that the robot is about to print, if it prints one at once: its state
-    /// must already match that answer.
+    /// Judges the answer that the robot is about to print, if it answers at once: the robot's
+    /// state must already match that answer.
     fn predict(&mut self, line: &'static str, before: &Running) -> Verdict {
         let after = self.settled();
         let text = &after.board.transmitter.text;
@@ -108,7 +108,7 @@ impl World {
         self.look_ahead()
     }
 
-    /// Passes the robot's lines to the observer; they were decided at `since` or later.
+    /// Passes the lines that the robot has printed to the observer. The robot composed them at `since` or later.
     pub(super) fn listen(&mut self, since: Time) -> Verdict {
         let text = std::mem::take(&mut self.running.board.transmitter.text);
         // The last line may have been printed only in part.

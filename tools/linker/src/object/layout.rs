@@ -1,4 +1,4 @@
-//! The order of an object's functions: decides which may move, and moves their sections.
+//! Layout of an object: decides which functions may move, and moves their sections.
 
 use object::build::elf::{Section, SectionId};
 use object::elf;
@@ -42,14 +42,14 @@ impl Object<'_> {
         if !codes().all(may_move) {
             return 0;
         }
-        // The pieces are the functions; the routines with the sections that stay after them; and
-        // all other files.
+        // The pieces are each function, then the routines together with the sections that stay after
+        // them, then all other files.
         let [middle, others] = [functions.len(), functions.len() + 1];
         let piece = |section: SectionId| functions.iter().position(|other| *other == section);
         let mut pieces = Pieces::default();
         let is_long = |reference: &&Reference| reference.kind == elf::R_AVR_CALL;
         for section in &functions {
-            // As if all calls in it were short.
+            // The size is estimated as if all calls in the function were short.
             let less = 2 * self.references(*section).iter().filter(is_long).count() as u64;
             let size = self.0.sections.get(*section).sh_size - less;
             pieces.sizes.push(size as u32);
@@ -92,8 +92,8 @@ impl Object<'_> {
         saved
     }
 
-    /// Moves a section of code and its table of relocations to the end of the file. Both, because
-    /// the linker places a section where it reads the first of the two.
+    /// Moves a section of code and its table of relocations to the end of the file. Both must move,
+    /// because the linker places a section where it reads the first of the two.
     fn move_to_the_end(&mut self, section: SectionId, is_low: bool) {
         let new = self.0.sections.copy(section);
         if let (true, Some(name)) = (is_low, new.name.strip_prefix(b".text")) {

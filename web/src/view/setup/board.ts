@@ -5,12 +5,12 @@ import type { Session } from '../../session';
 import { button, list, note, row, warning, words } from '../make';
 import type { Step } from './step';
 
-/** The name of the page's robot in messages. */
+/** Returns the name of the page's robot for messages. */
 export function nameOf({ file, toml, original }: Session): string {
   return toml === original ? `${file}.toml` : `${file}.toml with your changes`;
 }
 
-/** The message that identifies the board. */
+/** Returns the message that says what the board is and has. */
 export function answerOf(session: Session): string {
   const { link, banner } = session;
   if (banner === undefined) return `The ${link.name} has not identified itself yet.`;

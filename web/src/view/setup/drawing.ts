@@ -1,5 +1,5 @@
-// The drawing of the first connection, from above, forward is up: each servo, the direction of its crank, and an arrow for
-// a turn. The body is drawn short, so that the cranks are large.
+// The drawing of the first connection, from above with forward upward: each servo, the direction of its crank, and an
+// arrow for a turn. The body is drawn shorter than it is, so that the cranks are large.
 import type { Description, Four, Scene, Point } from '../../robot';
 
 export const PLACES = ['front left', 'front right', 'back right', 'back left'] as const;
@@ -8,13 +8,13 @@ export const nameOf = (servo: number): string => `A${servo + 1}, ${PLACES[servo]
 /** The selected servo. */
 export interface SelectedServo {
   servo: number;
-  /** Its turn, deg counter-clockwise; null for none. */
+  /** The servo's turn, deg counter-clockwise; null for none. */
   by: number | null;
 }
 
-/** Half of the distance between the shafts in front and those behind, as drawn, mm. */
+/** Half of the drawn distance from the front shafts to the rear shafts, mm. */
 const SHORT = 34;
-/** Length of the arrow's arc, deg: more than the servo turns, to be clear. */
+/** Length of the arrow's arc, deg: more than the servo turns, to be seen clearly. */
 const ARC = 55;
 const NAMESPACE = 'http://www.w3.org/2000/svg';
 const RADIANS = Math.PI / 180;
@@ -28,20 +28,20 @@ function shape(tag: string, attributes: Record<string, string | number>, text = 
   return made;
 }
 
-/** The point at a distance, mm, and angle from another, in the drawing's frame with y downwards. */
+/** Returns the point at a distance, mm, and an angle from another point, in the drawing's frame with y downward. */
 function from([x, y]: Point, length: number, degrees: number): Point {
   return [x + length * Math.cos(degrees * RADIANS), y - length * Math.sin(degrees * RADIANS)];
 }
 
 const line = (className: string, [x1, y1]: Point, [x2, y2]: Point) => shape('line', { class: className, x1, y1, x2, y2 });
 
-/** Draws an arrow about a shaft that begins at an angle. */
+/** Draws an arrow about a shaft. It begins at the angle `begin`, deg, and turns in the direction of `by`. */
 function arrow(shaft: Point, radius: number, begin: number, by: number): SVGElement[] {
   const sense = Math.sign(by);
   const end = begin + sense * ARC;
   const [x1, y1] = from(shaft, radius, begin);
   const [x2, y2] = from(shaft, radius, end);
-  // Counter-clockwise is a negative sweep where y is downwards.
+  // SVG's sweep flag is 0 for counter-clockwise, since y is downward.
   const arc = shape('path', { class: 'arrow', d: `M ${x1} ${y1} A ${radius} ${radius} 0 0 ${by > 0 ? 0 : 1} ${x2} ${y2}` });
   const head = [from(shaft, radius + 6, end - sense * 9), [x2, y2], from(shaft, radius - 6, end - sense * 9)];
   return [arc, shape('polyline', { class: 'arrow', points: head.map((spot) => spot.map((n) => (n as number).toFixed(2)).join()).join(' ') })];
@@ -80,7 +80,7 @@ export function drawing({ servos, plate }: Description, { shafts, tips }: Scene,
       group.append(line('ghost', shaft, from(shaft, length, neutral + shown.by)), ...arrow(shaft, length * 0.75, neutral + Math.sign(shown.by) * 8, shown.by));
     }
     group.append(shape('circle', { class: 'shaft', cx: shaft[0], cy: shaft[1], r: 5 }));
-    // Outside the arrow, which may reach as far as the crank.
+    // The text is outside the arrow, which may reach as far as the crank.
     const isLeft = shaft[0] < 0;
     const x = (isLeft ? -1 : 1) * (Math.abs(shaft[0]) + length + 6);
     const y = shaft[1] + Math.sign(shaft[1]) * length * 0.4;

@@ -1,4 +1,4 @@
-// The step Limits: a servo's travel before printed parts touch each other.
+// The step Limits: limits each servo's travel where printed parts would touch each other.
 import { angle } from '../../setup/guide';
 import { nameOf, type SelectedServo } from './drawing';
 import { button, note, number, row, words } from '../make';

@@ -1,4 +1,4 @@
-// The step Scale: not every servo turns a degree for 10 us of pulse.
+// The step Scale: measures how far each servo turns, since not every servo turns 1 deg per 10 us of pulse width.
 import { nameOf, type SelectedServo } from './drawing';
 import { button, note, number, row, words } from '../make';
 import type { Step, Tools } from './step';
@@ -8,7 +8,7 @@ export class Scale implements Step {
   readonly title = 'Measure how far they turn';
   readonly needsRobot = true;
   readonly isByServo = true;
-  /** The servo that was turned, and its turn, deg; null before. */
+  /** The servo that was turned, and its commanded turn, deg; null before the turn. */
   private turned: { servo: number; by: number } | null = null;
 
   forget(): void {

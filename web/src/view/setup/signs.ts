@@ -1,5 +1,5 @@
-// The step Signs: a servo with a wrong sign stands on the other side of its neutral angle, and the guard would take
-// an unsafe pose for a safe one.
+// The step Signs, in which the user proves the direction in which each servo turns. A servo with a wrong sign stands
+// on the other side of its neutral angle, and the guard would take an unsafe pose for a safe one.
 import { nameOf, PLACES, type SelectedServo } from './drawing';
 import { button, note, row, words } from '../make';
 import type { Step, Tools } from './step';
@@ -14,9 +14,9 @@ export class Signs implements Step {
   readonly title = 'Prove the signs';
   readonly needsRobot = true;
   readonly isByServo = true;
-  /** The servo that was turned, and its turn, deg; null before. */
+  /** The servo that was turned, and its turn, deg; null before the first turn. */
   private moved: { servo: number; by: number } | null = null;
-  /** The user's observation that points to the wiring. */
+  /** The user's observation, if it points to a mistake in the wiring: another servo turned, or none. */
   private observed: 'other' | 'none' | null = null;
 
   forget(): void {

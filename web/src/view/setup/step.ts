@@ -1,4 +1,4 @@
-// A step of the first connection, and the tools that it may use.
+// The interface of a step of the first connection, and the tools that a step may use.
 import type { Guide } from '../../setup/guide';
 import type { Session } from '../../session';
 import type { WriteContent, Writer } from '../writer';
@@ -15,11 +15,11 @@ export interface Tools {
   connect(): void;
   /** Writes the page's robot, alone or with the firmware. */
   write(what: WriteContent): void;
-  /** Runs an action at the robot; shows the returned message or the reason of a failure. */
+  /** Runs an action with the robot's guide; shows the returned message or the reason of a failure. */
   run(act: (guide: Guide) => Promise<string>): void;
-  /** Sets the calibration of a file, unsaved. */
+  /** Sets the calibration in the text of a file, without saving it in the board. */
   setCalibration(text: string, name: string): void;
-  /** Marks this step as done. */
+  /** Marks a step as done. */
   done(step: string): void;
   /** Returns true if a step is done. */
   isDone(step: string): boolean;
@@ -30,17 +30,17 @@ export interface Tools {
 }
 
 export interface Step {
-  /** Its name in the list of steps. */
+  /** The step's name in the list of steps. */
   readonly name: string;
   readonly title: string;
   /** True if the step needs a robot with this firmware. */
   readonly needsRobot: boolean;
-  /** True if the step goes from servo to servo. */
+  /** True if the step is done for each servo, which the user selects. */
   readonly isByServo?: boolean;
   /** Makes the elements of the step. */
   parts(tools: Tools): Node[];
   /** The servo selected in the drawing; a step without this has no drawing. */
   drawing?(tools: Tools): SelectedServo | null;
-  /** Resets the step, for another board or after it was left. */
+  /** Resets the step's own state when the step is entered or another board is connected. */
   forget?(): void;
 }

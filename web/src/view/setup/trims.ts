@@ -3,7 +3,7 @@ import { nameOf } from './drawing';
 import { button, note, row, words } from '../make';
 import type { Step } from './step';
 
-/** Coarse and fine, deg counter-clockwise. */
+/** Coarse and fine changes of the trim, deg counter-clockwise. */
 const BY = [0.5, 0.1, -0.1, -0.5];
 
 export const trims: Step = {

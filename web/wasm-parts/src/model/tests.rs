@@ -10,7 +10,7 @@ fn model(drive: &str) -> Model {
     Model::read(&format!("{PAPER}\n[leg.drive]\nkind = \"{drive}\"")).expect("paper")
 }
 
-/// A point of a mount's frame in the chassis frame.
+/// Transforms a point from a mount's frame to the chassis frame.
 fn mapped([x, y, cos, sin]: [f64; 4], point: Vector) -> Vector {
     let (at, turn) = (Vector::new(x, y), Vector::new(cos, sin));
     at + turn * point.x + turn.left() * point.y
@@ -66,7 +66,7 @@ fn without_lag_every_mount_is_where_the_assembly_has_it() {
     }
 }
 
-/// The corners of each solid.
+/// Returns the corners of each solid.
 fn corners(solids: &[Triangles]) -> Vec<Vec<[f32; 3]>> {
     let corners = solids.iter().map(|solid| solid.corners.as_chunks().0);
     corners.map(<[_]>::to_vec).collect()
@@ -93,7 +93,7 @@ fn a_printed_solid_is_placed_exactly_into_its_body() {
             "{}: {low} to {high}",
             body.name
         );
-        // Each corner lies on or within the body's own shapes, seen from above.
+        // Seen from above, each corner must lie on or within the body's own shapes.
         for corner in &solids[known.solid] {
             let [x, y, _] = corner.map(f64::from);
             let at = Vector::new(m[0] * x + m[4] * y + m[12], m[1] * x + m[5] * y + m[13]);

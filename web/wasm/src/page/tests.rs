@@ -22,7 +22,7 @@ fn page() -> Page {
     page
 }
 
-/// The index of a gait.
+/// Returns the index of a gait.
 fn index(page: &Page, name: &str) -> usize {
     let gait = page.robot().and_then(|robot| robot.gait(name));
     gait.expect(name).index()
@@ -53,7 +53,7 @@ fn servos_have_their_dead_band_and_their_rate_and_ideal_ones_neither() {
         assert!((turned - wanted[0]).abs() < 1e-9, "{turned}");
         assert!((error - wanted[1]).abs() < 1e-9, "{error}");
     };
-    // 4 us are less than half of its dead band of 10 us.
+    // 4 us are less than half of the servo's dead band of 10 us.
     near(turned(&mut page, 64), [0.0, 0.4]);
     // A step of 20 deg: less than 10 in the first 20 ms at 500 deg/s, as the rotor must spin up;
     // then to within the dead band and the error at which the servo carries its pad.
@@ -71,8 +71,8 @@ fn servos_have_their_dead_band_and_their_rate_and_ideal_ones_neither() {
     near(turned(&mut page, 0), [0.0, 0.0]);
 }
 
-/// Follows two cycles of a gait with ideal servos. Returns the movement of the second one, the
-/// slides of the feet in each of its frames, mm, and its largest lag.
+/// Lets the page follow two cycles of a gait with ideal servos, by poses `frames` frames apart. Returns the
+/// second cycle's displacement, its slide of each foot per pose, mm, and its largest lag, deg.
 fn cycle(page: &mut Page, name: &str, frames: u32) -> (Travel, Vec<[f64; 4]>, f64) {
     page.set_servos("ideal");
     let gait = page.robot().and_then(|robot| robot.gait(name)).expect(name);
@@ -99,7 +99,7 @@ fn a_cycle_frame_by_frame_leads_where_the_prediction_says() {
         let mut page = page();
         let robot = page.robot().expect("a robot");
         let wanted = robot.predict(robot.gait(name).expect("a gait"));
-        // Every frame, and every second one, as a board on USB reports.
+        // A pose in every frame, and in every second frame, as a board on USB reports.
         for frames in [1, 2] {
             let (movement, _, _) = cycle(&mut page, name, frames);
             let near = |got: f64, wanted: Option<f64>, within: f64| {
@@ -139,7 +139,7 @@ fn servos_with_a_dead_band_are_predicted_to_lose_it() {
     for (copy, own) in copy.into_iter().zip(own) {
         assert!(copy > 1.3 * own, "a weaker servo uses more: {copy} {own}");
     }
-    // docs/gaits.md has these two values, for half and full pace, and the one for 4 V below.
+    // docs/gaits.md has these two values, for half and full pace, and the value for 4 V below.
     assert!(
         (own[9] - 0.45).abs() < 0.005 && (own[19] - 0.72).abs() < 0.005,
         "{own:?}"

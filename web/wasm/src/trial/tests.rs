@@ -1,4 +1,4 @@
-//! A gait of the page: taken apart, tried, refused and written.
+//! Tests of an edited gait: converted to bars, tried, refused and written.
 
 use super::*;
 use crate::paper::{TEXT, paper, with_twin};
@@ -12,7 +12,7 @@ fn trial(bars: &Bars, twin: &Twin) -> Result<Trial, NoTrial> {
     made.trial(twin).expect("bars always have a table")
 }
 
-/// Puts the gait of these bars into a text of robot.toml.
+/// Puts a gait into the text of a robot.toml.
 fn put_into(bars: &Bars, text: &str) -> String {
     let made = EditedGait::Bars(bars.clone());
     made.put_into(text, &paper()).expect("a table")

@@ -1,4 +1,4 @@
-//! Every word of the console, every way to write a number, and every mistake.
+//! Every word of the console, every notation of a number, and every mistake.
 
 use std::format;
 use std::string::{String, ToString};
@@ -51,8 +51,8 @@ fn every_word_is_its_command() {
     }
 }
 
-/// Parses a line in three consoles: gaits take priority over every word, over the words from
-/// `cal` on, and over none.
+/// Parses a line in three consoles, in which gaits have priority over every word, over the words from
+/// `cal` on, and over no word.
 fn parse_by_priority(line: &str, robot: &Robot) -> [Result<Command, Misread>; 3] {
     const CAL: usize = Word::Cal as usize;
     const NONE: usize = Word::ALL.len();

@@ -1,4 +1,4 @@
-//! The console as seen from the other end of the line.
+//! Tests of the console through its serial line: commands go in, printed lines come out.
 
 use std::format;
 use std::string::{String, ToString};
@@ -30,7 +30,7 @@ use crate::step::Step;
 use crate::virtual_board::{Eeprom, VirtualBoard, is_final};
 use dialogue::{Dialogue, awake, neutral, pairs, standing, supply, widths};
 
-/// The neutral pose of the odd robot, as a command.
+/// The command for the neutral pose of [`Sample::odd`].
 const NEUTRAL: &str = "pose 132.37 47.91 309.64 226.18";
 
 #[test]
@@ -106,7 +106,7 @@ fn many_or_long_gait_names_fill_several_lines_of_help_and_none_is_too_long() {
             .collect();
         let listed: Vec<&str> = lines.iter().flat_map(|line| line.split('|')).collect();
         assert_eq!(listed, names);
-        // A line ends only where the next name does not fit, with the prefix and the bar counted.
+        // A line ends only where the prefix, its names, a bar and the next name would be too long.
         for pair in lines.windows(2) {
             let next = pair[1].split('|').next().expect("a name");
             let whole = "# gaits: ".len() + pair[0].len() + 1 + next.len();
@@ -172,7 +172,7 @@ fn the_reason_is_still_printed_if_stand_comes_before_it_could_be() {
 fn pending_lines_are_written_in_this_order_banner_answer_fault_reason_report() {
     let mut dialogue = Dialogue::power_on(*Sample::odd());
     dialogue.board.send(b"stray\rwatch 1\rhelp\r");
-    // The transmitter has room for one line at a time until the first line of the help is written.
+    // Every line is read as soon as it is written, until the first line of the help.
     let mut printed = Vec::new();
     let mut line = |dialogue: &mut Dialogue| {
         while !dialogue.board.transmitter.text.ends_with("\r\n") {
@@ -182,7 +182,7 @@ fn pending_lines_are_written_in_this_order_banner_answer_fault_reason_report() {
         printed.last().expect("a line").starts_with("# gaits: ")
     };
     while !line(&mut dialogue) {}
-    // The guard holds the robot, an edge comes late, a report is due.
+    // From here nobody reads. Meanwhile the guard stops the robot, an edge comes late, and a report is due.
     dialogue.run_without_reader(199);
     assert!(dialogue.motion().hazard().is_some());
     dialogue.board.late = 1;

@@ -63,7 +63,7 @@ impl Text {
         self.next.len() - 1
     }
 
-    /// Adds a state that each of these bytes leads to, from each of these states.
+    /// Adds a state, with a transition to it from each of these states for each of these bytes; returns the state.
     fn add_transition(
         &mut self,
         from: &[usize],
@@ -76,6 +76,7 @@ impl Text {
         to
     }
 
+    /// Adds a word at the start of a line, unless it is there already; returns the state at its end.
     fn word(&mut self, word: &str) -> usize {
         word.bytes().fold(Self::START, |state, byte| {
             self.next[state]
@@ -96,7 +97,8 @@ impl Text {
         ends
     }
 
-    /// Adds degrees or hundredths: an optional sign, up to three digits, up to two decimals.
+    /// Adds degrees or hundredths: an optional sign, up to three digits, up to two decimals; returns the states in
+    /// which the number may end.
     fn decimal(&mut self, blank: usize) -> Vec<usize> {
         let sign = self.add_transition(&[blank], *b"+-");
         let mut ends = self.digits(&[blank, sign], 3);
@@ -105,7 +107,7 @@ impl Text {
         ends
     }
 
-    /// The state from which the last byte led to state `at`; `None` if there are several.
+    /// The state before state `at`: the start if no state precedes it, `None` if several do.
     fn before(&self, at: usize) -> Option<usize> {
         let leads = |from: &usize| self.next[*from].values().any(|to| *to == at);
         let mut before = (0..self.next.len()).filter(leads);
@@ -184,17 +186,18 @@ impl Text {
 enum Read {
     /// The beginning of a command, or all of it.
     Begun(usize),
-    /// The same, followed by this many bytes that continue no command.
+    /// The beginning of a command in this state, followed by this many bytes that continue no command.
     Other(usize, u8),
     /// A line with a garbled byte.
     Garbled,
     /// A line of unknown content: a byte was deleted whose previous state is ambiguous.
     Deleted,
-    /// A command that was read to its end, in this state.
+    /// A command with its line end, in this state; `usize::MAX` if its content is unknown.
     Ended(usize),
 }
 
 impl Read {
+    /// The reading after another byte.
     fn take(self, byte: u8, text: &Text) -> Self {
         match (byte.to_ascii_lowercase(), self) {
             (b'\r' | b'\n', Self::Begun(state)) if text.ends.contains(&state) => Self::Ended(state),
@@ -216,16 +219,17 @@ impl Read {
     }
 }
 
-/// The line's level, bit by bit, and the bits that may come next.
+/// A graph of the bits that a sender may send: the line's level at each, and the bits that may follow it. Bit 0 is
+/// the idle line; each byte of the text has ten bits, a start bit first.
 struct Bits {
     high: Vec<bool>,
     next: Vec<Vec<usize>>,
-    /// The start bits of a first byte.
+    /// The start bits of the bytes with which a text may begin.
     first: Vec<usize>,
 }
 
 impl Bits {
-    /// Text without pauses, and silence after its end.
+    /// The bits of a text sent without pauses, and silence after its end.
     fn of(text: &Text) -> Self {
         let mut bytes: Vec<(usize, u8, Option<usize>)> = Vec::new();
         for (state, next) in text.next.iter().enumerate() {
@@ -265,7 +269,7 @@ impl Bits {
         bits
     }
 
-    /// Bytes of 7 bits in any order, with pauses.
+    /// The bits of any 7-bit bytes in any order, with or without pauses.
     fn any() -> Self {
         let mut text = Text::new();
         text.next[0] = (0..0x80).map(|byte| (byte, 0)).collect();
@@ -281,7 +285,7 @@ impl Bits {
 /// The bits of the sender that a receiver samples, counted from the start edge: for every difference of the
 /// clocks and every position of the middle.
 fn sampled_bits(sender: Rate, receiver: Rate) -> BTreeSet<[usize; 10]> {
-    // The chip's own rate, as src/board/serial.rs has it.
+    // The rate that the chip's divider can produce, as in src/board/serial.rs.
     let chip = 2e6 / (2e6 / f64::from(receiver.baud())).round();
     let ratio = f64::from(sender.baud()) / chip;
     let mut all = BTreeSet::new();
@@ -297,7 +301,7 @@ fn sampled_bits(sender: Rate, receiver: Rate) -> BTreeSet<[usize; 10]> {
     all
 }
 
-/// A receiver's state at a bit of the sender.
+/// A receiver's reading, and the bit that the sender sends at that time.
 type ReceiverState = (Read, usize);
 
 /// Reads a byte from each of these start edges; returns the states after it.
@@ -338,7 +342,7 @@ fn read_byte(
     current.into_iter().map(end).collect()
 }
 
-/// The start edges that can follow each state.
+/// The start edges that can follow these states.
 fn edges_from(states: BTreeSet<ReceiverState>, bits: &Bits) -> BTreeSet<ReceiverState> {
     let (mut visited, mut edges) = (BTreeSet::new(), BTreeSet::new());
     let mut left: Vec<ReceiverState> = states.into_iter().collect();
@@ -393,7 +397,8 @@ fn commands_read(sender: Rate, receiver: Rate) -> BTreeSet<usize> {
     commands
 }
 
-/// The pairs of different rates in which the sender is, or is not, the faster one.
+/// The pairs (sender, receiver) of different rates whose sender is the faster one, or the slower one if `is_faster`
+/// is false.
 fn pairs(is_faster: bool) -> impl Iterator<Item = (Rate, Rate)> {
     let all = Rate::ALL.into_iter();
     let pairs = all.flat_map(|sender| Rate::ALL.map(|receiver| (sender, receiver)));

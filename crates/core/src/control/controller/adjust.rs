@@ -1,5 +1,5 @@
-//! Changes the settings of the servos. They take effect at once, and only if the robot can
-//! still walk all gaits and keep its present pose and target.
+//! Changes the settings of the servos. A change takes effect at once. It is refused if the robot could
+//! no longer walk all gaits, or no longer keep its present pose or target.
 
 use super::Control;
 use crate::control::order::Setting;

@@ -33,8 +33,8 @@ impl Control {
         self.job.is_some() || self.rest_record.is_some() && self.safety.allows_writing_now()
     }
 
-    /// True while an order waits for the supply: until it is measured, or until a dip ends or
-    /// turns out to be a low supply. There is nothing to do before the next frame.
+    /// True while an order waits for the supply: until the supply is measured, or until a dip ends or
+    /// turns out to be a low supply. Meanwhile there is nothing to do before the next frame.
     pub fn waits_for_supply(&self) -> bool {
         let supply = self.safety.supply();
         let will_know = match supply.measured() {
@@ -45,7 +45,7 @@ impl Control {
     }
 
     /// Does a step of the EEPROM operation: one byte at most. Returns the outcome of an order
-    /// once it is complete.
+    /// once the order is complete, otherwise `None`.
     #[inline(never)]
     pub fn write_memory<M: Memory>(&mut self, memory: &mut M) -> Option<Result<(), Refusal>> {
         if !memory.is_ready() || self.waits_for_supply() {

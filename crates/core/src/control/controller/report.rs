@@ -51,7 +51,7 @@ impl Control {
         self.restarts
     }
 
-    /// The present fault: the guard's first, else that of [`Safety`].
+    /// The present fault: [`Fault::Guard`] while the guard holds the robot, otherwise the fault of [`Safety`].
     pub fn fault(&self) -> Option<Fault> {
         match self.motion.hazard() {
             Some(_) => Some(Fault::Guard),

@@ -11,11 +11,11 @@ use crate::numbers::gaits::{GaitId, Input, Step};
 /// The running routine, if there is one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Routine {
-    /// The routine; `stand`, which is not one, while there is none.
+    /// The routine's index; the index of `stand` while no routine runs.
     pub id: GaitId,
     /// The number of the next step.
     step: u8,
-    /// Rounds that are not over yet; 0 for a routine without an end.
+    /// Rounds that are not over yet, including the present one; 0 for a routine without an end.
     rounds_left: u16,
     /// Frames until the step is over; 0 if the end of a gait's count is awaited,
     /// [`Step::ENDLESS`] if only a contact ends it.
@@ -36,7 +36,8 @@ impl Routine {
 }
 
 impl Control {
-    /// Begins a gait for `count` cycles, or a routine for `count` rounds; 0 for its default.
+    /// Begins a gait for `count` cycles, 0 for no limit; or a routine for `count` rounds, 0 for the number in
+    /// robot.toml.
     #[inline(never)]
     pub(super) fn start(&mut self, id: GaitId, count: u16) {
         let gait = self.motion.robot().gait(id);
@@ -81,7 +82,7 @@ impl Control {
             number = first_of_round.offset;
             if self.routine.rounds_left == 1 {
                 self.routine = Routine::NONE;
-                // The pose of its last rest has to survive a loss of power.
+                // The pose of the routine's last rest has to survive a loss of power.
                 if self.motion.is_resting() {
                     self.rest();
                 }

@@ -7,7 +7,7 @@ fn supplies() -> Supplies {
     Sample::odd().supplies()
 }
 
-/// A state after power-on with `boot` cancelled.
+/// The state after power-on, with `boot` cancelled.
 fn without_boot() -> Safety {
     let mut safety = Safety::default();
     safety.note_byte();
@@ -18,7 +18,7 @@ fn frame(safety: &mut Safety, health: &Health) -> Reaction {
     safety.frame(health, &supplies(), State::Still, 0)
 }
 
-/// A board at this many volts, its rail at 6 V.
+/// The health of a board whose chip has a supply of this many volts and whose rail has 6 V.
 fn at(volts: f64) -> Health {
     Health {
         supply: Reading {
@@ -63,7 +63,7 @@ fn before_the_supply_has_been_measured_a_robot_may_move_but_not_write() {
         );
         assert_eq!(safety.response(Event::Move, State::Still), Response::Obey);
     }
-    // One reading decides nothing here, too.
+    // Here, too, a single reading decides nothing: it takes six.
     for _ in 0..5 {
         frame(&mut safety, &HEALTHY);
         assert!(!safety.allows_writing());
@@ -121,8 +121,8 @@ fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says_and_no_sooner()
             while safety.frame(&HEALTHY, &supplies, State::Walking, deadman) == Reaction::None {
                 frames += 1;
             }
-            // A command may come just before a frame: this many milliseconds have passed since then, in this
-            // frame and in the previous one.
+            // If the command came just before the first frame, these are the times since it, ms: in the last frame,
+            // which ended the gait, and in the previous one.
             let (min, before) = (20 * frames, 20 * frames - 20);
             assert!(
                 min >= u32::from(deadman) && before < u32::from(deadman),

@@ -124,7 +124,7 @@ fn the_docs_print_the_table_of_restarts() {
 fn only_stand_and_boot_give_a_robot_without_pulses_any() {
     for event in Event::ALL {
         for (supply, _) in SUPPLIES {
-            // `save` is done, too, and moves nothing.
+            // `save` is obeyed, too, but moves nothing.
             if response(event, supply, State::Resting) == Response::Obey {
                 assert!(matches!(event, Event::Stand | Event::Boot | Event::Save));
             }

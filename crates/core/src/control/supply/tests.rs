@@ -31,12 +31,13 @@ fn reading(volts: f64, rail: f64) -> Reading {
     }
 }
 
-/// Frames until the level of a board without a measured rail changes, and the level.
+/// Measures a board without a measured rail until its level changes; returns the number of frames, 0 if it has not
+/// changed after 200, and the level.
 fn until(supply: &mut Supply, volts: f64) -> (usize, Level) {
     until_change(supply, reading(volts, 0.0), &SUPPLIES)
 }
 
-/// Frames until the level changes, and the level.
+/// Measures until the level changes; returns the number of frames, 0 if it has not changed after 200, and the level.
 fn until_change(supply: &mut Supply, reading: Reading, supplies: &Supplies) -> (usize, Level) {
     for frame in 1..=200 {
         if supply.measure(reading, supplies) {

@@ -91,7 +91,7 @@ fn a_servo_tolerates_the_pulses_of_its_travel_and_gaits_stay_within_it() {
         };
         assert!(opens(&|_| {}));
         for smallest in [7_999, 8_000] {
-            // The shortest pulse is that of the clockwise end.
+            // The shortest pulse is that of the travel's clockwise limit.
             let at_end = |calibration: &mut Calibration| {
                 let short = calibration.neutral.0 - calibration.pulse(calibration.min);
                 calibration.neutral.0 = smallest + short;

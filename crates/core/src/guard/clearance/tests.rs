@@ -58,8 +58,8 @@ impl Bounds {
     }
 }
 
-/// True if the exact value is clear of all its limits by more than the errors, or
-/// beyond one of them; `None` in between.
+/// `Some(true)` if the exact pose keeps all limits by more than the errors, `Some(false)` if it breaks
+/// one by more than the errors, `None` if the errors may change the decision.
 fn is_safe_for_certain(robot: &Sample, pose: &Pose) -> Option<bool> {
     let bounds = Bounds::of(robot, pose);
     let Some(solution) = robot.solve(pose) else {
@@ -293,7 +293,7 @@ fn the_smallest_margin_is_found_at_every_index() {
 fn a_leg_beyond_a_change_point_has_a_negative_margin_at_either_end() {
     let robot = Sample::odd();
     for servo in 0..4 {
-        // Beyond the x axis of the chassis, the end's own y is negative.
+        // Beyond the x axis of the chassis, y is negative in the frame of the leg's five-bar.
         let neutral = f64::from(robot.neutral()[servo].0) * 360.0 / 65536.0;
         let axis = if (90.0..270.0).contains(&neutral) {
             180.0

@@ -7,7 +7,7 @@ use super::*;
 use crate::numbers::units::Angle;
 use crate::sample::{Loop, bounds, degrees, sine};
 
-/// Any bars, mm, whose couplers are long enough for the others.
+/// Random bars, mm, with couplers that are long enough for the other bars.
 fn bars() -> impl Strategy<Value = kinematics::FiveBar> {
     let crank = || 1.0..100.0f64;
     let coupler = || 5.0..120.0f64;
@@ -55,18 +55,18 @@ proptest! {
         let angles = [left, right].map(degrees);
         let bound = bounds::End::of(&bars, &integers, angles);
         let Ok(pose) = bars.forward(angles[0], angles[1]) else {
-            // Couplers that just fail to meet may meet in whole steps.
+            // Couplers that just fail to meet may meet once their lengths are rounded to whole steps.
             prop_assert!(sine(actual.type2).abs() <= bound.type2, "{actual:?}");
             return Ok(());
         };
         let error = sine(actual.type2).abs() - pose.type2;
         prop_assert!(error <= bound.type2, "type-2 off by {error}: {bound:?}");
         if actual == EndMargins::default() {
-            // All margins are zero, and a refusal says "below 0.1".
+            // Margins of zero are reported as "below 0.1", so the true type-2 margin has to be below that.
             prop_assert!(pose.type2 < 0.1, "nothing is known of {}", pose.type2);
         }
         if !bound.is_known {
-            // The margin may be too small, or all of them zero.
+            // The tables may have no value here. Then the margin may be too small, or all margins zero.
             return Ok(());
         }
         prop_assert_ne!(actual, EndMargins::default());
@@ -84,8 +84,8 @@ proptest! {
     }
 }
 
-/// Bars of short couplers with a small type-2 margin, where a step turns them most. They were found among
-/// random bars, and exceeded a bound that had been found by trial alone.
+/// Bars with short couplers at a small type-2 margin, where rounding a length by one step turns the couplers most.
+/// A search over random bars found them; their errors exceeded an earlier bound, a guess from trials.
 #[test]
 fn the_largest_errors_that_random_bars_have_found_are_within_their_bounds() {
     for ([base, crank_left, coupler_left, coupler_right, crank_right], angles, found) in [
@@ -126,7 +126,7 @@ fn the_largest_errors_that_random_bars_have_found_are_within_their_bounds() {
         let bound = bounds::End::of(&bars, &integers, angles);
         let pose = bars.forward(angles[0], angles[1]).expect("closes");
         let error = (sine(actual.type2).abs() - pose.type2).abs();
-        // The case still shows the error that was found.
+        // The case still has the error for which it was chosen.
         assert!(error > found && pose.type2 > 0.1, "{error}");
         assert!(
             error <= bound.type2 && bound.type2 < 2.5 * error,
@@ -137,7 +137,7 @@ fn the_largest_errors_that_random_bars_have_found_are_within_their_bounds() {
 
 #[test]
 fn roundings_of_the_type_2_margin_are_even_where_few_bits_are_left() {
-    // Close crank tips and long couplers: the square is small and its step large.
+    // Close crank tips and long couplers: their squared distance is small, and its rounding step relatively large.
     let bars = kinematics::FiveBar {
         base: 20.0,
         crank_left: 30.0,
@@ -174,8 +174,8 @@ fn couplers_in_line_and_crossed_crank_tips_are_beyond_every_limit() {
         let [left, right] = [left, right].map(Angle::from_centideg);
         margins(&bars, left, right)
     };
-    // Both cranks outwards: 80 mm apart, more than the couplers reach.
+    // Both cranks point outward: their tips are 80 mm apart, more than the couplers reach.
     assert_eq!(at(18_000, 0), EndMargins::default());
-    // Cranks that cross: the couplers close the loop upside down.
+    // The cranks cross: the couplers close the loop upside down.
     assert!(at(6_000, 12_000).type2 < Sine(0));
 }

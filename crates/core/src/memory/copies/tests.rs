@@ -52,7 +52,7 @@ fn loaded(robot: &Sample, eeprom: &Eeprom) -> (Settings, Outcome) {
     (settings, outcome)
 }
 
-/// The settings without their turn.
+/// The settings with save number 0, so that settings of different saves can be compared.
 fn without_turn(settings: &Settings) -> Settings {
     let mut copy = *settings;
     copy.set_turn(0);
@@ -168,7 +168,7 @@ fn any_flipped_bit_leaves_the_last_settings_the_previous_or_robot_tomls() {
             befores += 1;
         }
     }
-    // The bits of the last copy, and all others.
+    // A flipped bit of the last copy leaves the previous settings, any other bit the last ones.
     assert_eq!((befores, lasts), (45 * 8, 8 * (1024 - 45)));
 }
 

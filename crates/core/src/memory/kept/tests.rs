@@ -9,7 +9,7 @@ use super::*;
 use crate::numbers::pose::{Pose, Pulses};
 use crate::numbers::units::{Sweep, Width};
 
-/// RAM that survives a reset, and that may be reset after a number of stores.
+/// RAM that survives a reset; the reset may come after any number of stores.
 struct Ram {
     bytes: RefCell<Vec<u8>>,
     /// Number of stores until the reset; later ones are lost.
@@ -181,7 +181,7 @@ proptest! {
         reported in prop::sample::select(&CAUSES[..]),
     ) {
         let mut bytes = bytes;
-        // The mark that random bytes have once in 256 times.
+        // Random bytes contain the mark once in 256 times.
         prop_assume!(bytes[MARK] != ALIVE);
         let ram = Ram::of(bytes.clone());
         let restart = begin(&ram, reported);

@@ -1,22 +1,21 @@
-//! The count of a gait: the cycles that are left.
+//! Counts a gait's cycles, and brakes the gait at the end of the last one.
 //!
-//! A gait brakes in seven frames. While it brakes, it still covers as much as in three frames at full pace, or
-//! less from a lower pace. So it begins to brake three frames before the end of its last cycle, and stops
-//! within two frames of that end.
+//! Braking takes at most seven frames, in which the gait covers as much phase as in three frames at full pace, or
+//! less if it was slower. So it begins to brake three frames before the end of its last cycle, and stops within
+//! two frames of that end.
 
 use super::Motion;
 use crate::motion::state::{State, Target};
 use crate::numbers::units::phase16;
 
-/// The part of a gait's count that is left. A phase is in 1/65536 cycle, so that it wraps
-/// where a cycle does.
+/// The state of a gait's count. A phase is in 1/65536 cycle, so that it wraps at the end of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Count {
-    /// Cycles that are not over yet; 0 if nothing is counted.
+    /// Cycles left, including the present one; 0 if the gait has no count.
     pub cycles_left: u16,
-    /// The phase covered since the count began, without whole cycles.
+    /// The phase covered since the count began, modulo one cycle.
     pub phase_covered: u16,
-    /// The phase of the last frame.
+    /// The gait's phase in the last frame.
     pub phase: u16,
 }
 
@@ -30,7 +29,7 @@ impl Count {
 }
 
 impl Motion {
-    /// Counts the phase that the last frame covered, and brakes the gait at the end of the count.
+    /// Counts the phase that the last frame covered, and makes the gait brake shortly before the count ends.
     #[inline(never)]
     pub(super) fn count(&mut self) {
         let State::Cycling { gait, phase, .. } = &self.state else {

@@ -39,7 +39,7 @@ impl Motion {
         self.frames
     }
 
-    /// The reason why the guard stopped the robot, until the next motion begins.
+    /// The reason why the guard stopped the robot; `None` if it has not, or once the next motion has begun.
     pub const fn hazard(&self) -> Option<Hazard> {
         self.hazard
     }

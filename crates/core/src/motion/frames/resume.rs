@@ -1,7 +1,7 @@
 //! The first frames after a reset: the servos wake in the pose in which they are.
 //!
-//! A servo does not report its angle. A robot that rested or was held until the reset is in the pose of its
-//! saved stance, so it need not jump to the neutral pose.
+//! A servo does not report its angle. But a robot that rested or held a pose until the reset is still in the pose
+//! that was saved, so it can wake there and need not jump to the neutral pose.
 
 use super::{AWAKE_FRAMES, Motion, WAKE_INTERVAL_FRAMES};
 use crate::memory::restart::Stance;
@@ -24,7 +24,8 @@ impl Motion {
         }
     }
 
-    /// Resumes a robot without pulses: it stays at rest, and will wake in that pose.
+    /// Keeps the robot at rest, without pulses. It will wake in the pose of the stance, if that is safe and within
+    /// the travel.
     #[inline(never)]
     pub fn resume_rest(&mut self, stance: Option<&Stance>) {
         self.freeze(State::Resting);

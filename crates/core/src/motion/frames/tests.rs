@@ -1,4 +1,4 @@
-//! The transition table of the module, row by row, and the invariants of every frame.
+//! Tests of the transition table in the module's documentation, row by row, and of the invariants of every frame.
 
 use std::vec::Vec;
 
@@ -17,11 +17,11 @@ mod waking;
 /// Frames until all servos are awake.
 const WAKING: u32 = 20;
 
-/// Frames for braking, the longest move of these tests, and gathering pace.
+/// Frames that suffice for braking, the longest move of these tests, and reaching full pace.
 const LONG_ENOUGH: u32 = 150;
 
 impl Motion {
-    /// A motion that is awake and stands, at full pace.
+    /// The motion of [`Sample::odd`], awake and in `stand` at full pace.
     fn standing() -> Self {
         Self::awake(Sample::odd())
     }
@@ -181,7 +181,7 @@ fn a_move_that_arrives_at_a_gait_cycles_from_phase_0_and_gathers_pace() {
 
 #[test]
 fn another_pose_or_gait_lets_a_move_brake_on_its_line_before_it_turns_aside() {
-    // Stand brakes for seven frames; the move takes 24, and braking at most seven.
+    // First `stand` brakes for seven frames. The move takes 24, and its braking at most seven.
     const FAR: [i16; 4] = [2900, -2400, 2600, -3300];
     for frames in 8..24 {
         let mut motion = Motion::standing();
@@ -195,7 +195,7 @@ fn another_pose_or_gait_lets_a_move_brake_on_its_line_before_it_turns_aside() {
             pace = pace.saturating_sub(147);
             assert!(motion.is_moving() && motion.next.is_some());
             assert_eq!(motion.pace(), pace);
-            // Still on the line: every servo has covered the same share.
+            // Still on the line: every servo has covered the same share of its distance.
             let share = |n: usize| f64::from(motion.pose().0[n].0) / f64::from(FAR[n]);
             assert!((share(0) - share(3)).abs() < 0.002);
         }
@@ -295,7 +295,7 @@ fn a_speed_is_gathered_and_lost_as_pace() {
     assert_eq!(motion.pace(), pace::FULL);
 }
 
-// stop, rest and the guard, from anywhere.
+// `stop` and `rest` in any state.
 
 #[test]
 fn stop_freezes_the_pose_in_the_next_frame_of_every_gait_and_every_move() {

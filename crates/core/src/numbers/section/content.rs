@@ -67,10 +67,10 @@ pub struct Content {
     pub maps: [Map; 4],
 }
 
-/// The loop of one end, in steps of its scale.
+/// The bars of the five-bar of head or tail, in steps of their scale.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Loop {
-    /// Steps in a millimetre; the margins do not need it.
+    /// The scale of the lengths; the margins do not depend on it.
     pub scale: Scale,
     /// Distance between the shafts.
     pub base: i16,
@@ -85,7 +85,7 @@ pub struct Loop {
 /// A map of certified cells, see [`crate::numbers::cells::Cells`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Map {
-    /// The first row.
+    /// The number of the first row.
     pub first: i8,
     /// The first and the last column of each row; in a row without certified cells, the first is greater than the
     /// last.
@@ -215,7 +215,8 @@ impl Content {
         sealed([header.bytes(), numbers.bytes(), &rest].concat())
     }
 
-    /// Appends the tables of both ends to `rest`, equal ones only once, and returns the address of each.
+    /// Appends the tables of head and tail to `rest`, equal ones only once, and returns the address of each; 0 for a
+    /// table that is not needed.
     fn curves(&self, rest: &mut Vec<u8>) -> [[u16; CURVES]; 2] {
         let mut written: Vec<(Table, u16)> = Vec::new();
         self.ends.each_ref().map(|end| {

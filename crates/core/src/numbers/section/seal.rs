@@ -13,8 +13,9 @@ use crate::numbers::checksum::Checksum;
 /// A byte of erased flash.
 const ERASED: u8 = 0xff;
 
-/// The offset of the length; below, that of the checksum, which covers all bytes after it.
+/// The offset of the length.
 const LENGTH: usize = offset_of!(Header, length);
+/// The offset of the checksum, which covers all bytes after it.
 const CRC: usize = offset_of!(Header, crc);
 
 /// Writes the correct checksum into a section, whether its content is valid or not.
@@ -73,7 +74,7 @@ fn has_undetected_prefix(bytes: &[u8], sums: &[Checksum]) -> bool {
     false
 }
 
-/// The checksum before `byte` was added: the inverse of [`Checksum::and`].
+/// The checksum before `byte` was added: the inverse of [`Checksum::with_byte`].
 const fn without_last_byte(sum: Checksum, byte: u8) -> Checksum {
     // The low half follows only from the previous high half and the byte.
     let low = sum.0 as u8;
@@ -105,7 +106,7 @@ mod tests {
 
     use super::*;
 
-    /// Reference for [`a_beginning_passes`], byte by byte.
+    /// Reference for [`has_undetected_prefix`]: computes the checksum of each cut section anew.
     fn a_beginning_has_the_sum(bytes: &[u8]) -> bool {
         let sum = Checksum::of(bytes);
         (0..bytes.len()).any(|end| {
@@ -115,7 +116,7 @@ mod tests {
         })
     }
 
-    /// Reference for [`another_length_passes`], on the bytes that the flash would hold.
+    /// Reference for [`has_undetected_length`], on the bytes that the flash would hold.
     fn another_length_has_the_sum(section: &[u8]) -> bool {
         let sum = Checksum::of(&section[CRC_COVERS_FROM..]);
         let mut flash = section.to_vec();
@@ -154,7 +155,8 @@ mod tests {
                 if other <= CRC_COVERS_FROM || (bytes.len() + 1..length).contains(&other) {
                     continue;
                 }
-                // A shorter length: the checksum there. A longer one: a checksum that the erased bytes do not change.
+                // For a shorter length, the checksum at that length; for a longer one, a checksum that the erased
+                // bytes do not change.
                 let erased =
                     |from| (length..other).fold(from, |sum: Checksum, _| sum.with_byte(ERASED));
                 let target = match other < length {

@@ -14,8 +14,9 @@ use super::tally::{STEPS_BAND, Tally, margin_band};
 pub struct EndComparison<'a> {
     fixed: lizard_core::guard::five_bar::FiveBar<'a>,
     exact: FiveBar,
-    /// Smallest allowed type-2 and type-1 margins, from robot.toml; below, in the firmware's integers.
+    /// Smallest allowed type-2 and type-1 margins, from robot.toml.
     limits: [f64; 2],
+    /// Smallest allowed type-2 and type-1 margins, in the firmware's integers.
     fixed_limits: [i16; 2],
     /// Smallest allowed margin of a leg, in the firmware's integers.
     fixed_leg: i16,
@@ -46,6 +47,7 @@ impl<'a> EndComparison<'a> {
         }
     }
 
+    /// Compares the selected pairs in piece `cut` of the rows.
     pub fn walk(
         &self,
         [left, right]: [&Positions; 2],
@@ -83,7 +85,7 @@ impl<'a> EndComparison<'a> {
                     };
                     self.compare(&mut tally, margins, &truth, place);
                     let [sweep, other] = [left.sweep(row), right.sweep(column)];
-                    // The maps' rows are the sweeps of A1 and A3, their columns those of A2 and A4.
+                    // The maps' rows are the sweeps of A1 and A3, their columns the sweeps of A2 and A4.
                     let is_held = match self.end {
                         End::Head => self.cells.contains(sweep, other),
                         End::Tail => self.cells.contains(other, sweep),
@@ -132,7 +134,7 @@ impl<'a> EndComparison<'a> {
         let (clear, crossed) = truth.clear_by(self.limits);
         let exact = clear >= 0.0 && crossed > 0.0;
         if fixed != exact {
-            // The distance from its limit of the value that decides.
+            // The smaller distance from a limit, relative to its band, decides.
             let by_crossing = crossed / self.crossing_band < clear / self.margin_band;
             let (excess, band) = if by_crossing {
                 (crossed.abs(), self.crossing_band)
@@ -180,8 +182,8 @@ impl EndTruth {
     }
 }
 
-/// The bands of an end in which decisions may differ: the distance from a margin's limit, a sine, and that from the
-/// crossing of its crank tips, mm.
+/// The bands of an end in which decisions may differ: the distance from a margin's limit, a sine, and the distance
+/// from the crossing of the crank tips, mm.
 pub fn bands(robot: &Robot, end: End) -> [f64; 2] {
     let step = f64::from(1u32 << robot.content().ends[end as usize].scale.bits).recip();
     let band = margin_band(&robot.lizard().end(end), robot.limits().type2, step);

@@ -111,8 +111,8 @@ impl Proof {
             .sum()
     }
 
-    /// The number of wrong decisions outside the bands, plus that of poses in a cell that the guard refuses. If it is
-    /// 0, guard and cells are proved correct.
+    /// The number of wrong decisions outside the bands, plus the number of poses in a cell that the guard refuses.
+    /// If it is 0, guard and cells are proved correct.
     pub fn wrong(&self) -> u64 {
         self.findings
             .iter()

@@ -1,4 +1,4 @@
-//! The rows and columns of positions: rows are shared out to all cores, columns are computed eight at a time.
+//! The rows and columns of positions: rows are distributed over all cores, columns are computed eight at a time.
 
 use lizard_core::numbers::units::ONE_Q15;
 use lizard_kinematics::{Lanes, Vector};
@@ -76,6 +76,7 @@ pub fn eight_by_eight(
 }
 
 #[inline]
+/// Gathers the vectors of eight columns.
 pub fn lanes(vectors: &[Vector], columns: [usize; LANES]) -> Vector<Lanes<LANES>> {
     Vector::new(
         Lanes(columns.map(|column| vectors[column].x)),
@@ -84,6 +85,7 @@ pub fn lanes(vectors: &[Vector], columns: [usize; LANES]) -> Vector<Lanes<LANES>
 }
 
 #[inline]
+/// Repeats a vector in all lanes.
 pub fn splat(vector: Vector) -> Vector<Lanes<LANES>> {
     Vector::new(Lanes([vector.x; LANES]), Lanes([vector.y; LANES]))
 }

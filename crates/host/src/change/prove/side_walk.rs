@@ -37,6 +37,7 @@ impl<'a> SideWalk<'a> {
         }
     }
 
+    /// Compares the selected pairs in piece `cut` of the rows.
     pub fn walk(
         &self,
         [front, rear]: [&Positions; 2],

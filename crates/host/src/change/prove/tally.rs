@@ -7,9 +7,8 @@ use serde::{Deserialize, Serialize};
 /// [`margin_band`].
 pub const MARGIN_BAND: f64 = 0.002;
 
-/// Distance from the end of a stroke, or from the crossing of the crank tips, within which
-/// decisions may differ, in steps of the mechanism's lengths: 1/256 mm for a robot of the
-/// paper's size.
+/// Distance from a limit of a slider's stroke, or from the crossing of the crank tips, within which decisions may
+/// differ, in steps of the mechanism's lengths: 1/256 mm for a robot of the paper's size.
 pub const STEPS_BAND: f64 = 4.0;
 
 /// Distance from the limit of a type-2 or type-1 margin within which decisions about an end may differ:
@@ -40,12 +39,13 @@ pub struct Tally {
     pub travel: Option<f64>,
     /// The largest distance from a margin's limit at which the decisions differ.
     pub margin_band: Option<f64>,
-    /// The largest distance from the end of a stroke, or from the crossing of the crank tips,
-    /// at which the decisions differ, mm.
+    /// The largest distance from a limit of a slider's stroke, or from the crossing of the crank tips, at which the
+    /// decisions differ, mm.
     pub length_band: Option<f64>,
-    /// The number of pairs outside the bands that are decided wrong.
+    /// The number of pairs outside the bands that are decided wrong, plus the number of pairs in a cell that the
+    /// guard refuses.
     pub wrong: u64,
-    /// A description of the first such pair.
+    /// A description of the first wrong pair.
     pub example: Option<String>,
 }
 
@@ -58,7 +58,7 @@ impl Tally {
         }
     }
 
-    /// Adds the sums of another walk.
+    /// Combines two tallies: adds the counts, and keeps the larger errors and the first example.
     pub fn merged(mut self, other: Self) -> Self {
         self.pairs += other.pairs;
         self.certified += other.certified;
@@ -120,7 +120,7 @@ pub struct Finding {
     pub part: String,
     /// The servos that move the part.
     pub servos: Vec<&'static str>,
-    /// The tally over its pairs.
+    /// The tally over the positions of these servos.
     #[serde(flatten)]
     pub tally: Tally,
 }

@@ -14,7 +14,7 @@ use super::tally::{Finding, MARGIN_BAND, Tally};
 /// Number of pieces of the whole walk: [`CUTS`] for each end and each side.
 pub const PIECES: usize = 4 * CUTS;
 
-/// A walk over a robot's pairs that checks a guard; computes values for all pieces once.
+/// A walk over a robot's pairs of positions that checks a guard; holds the values that all pieces share.
 pub struct Walk<'a> {
     robot: &'a Robot,
     guard: &'a CoreRobot,
@@ -40,7 +40,7 @@ impl<'a> Walk<'a> {
         self.positions[servo].get_or_init(|| Positions::of(self.guard, servo))
     }
 
-    /// Walks one piece by its index, below [`PIECES`].
+    /// Checks the pairs of one piece, by its index, below [`PIECES`].
     pub fn piece(&self, index: usize, progress: &(dyn Fn(u64) + Sync)) -> Tally {
         let (part, cut) = (index / CUTS, index % CUTS);
         let positions_of = |servos: [usize; 2]| servos.map(|servo| self.positions(servo));
@@ -55,7 +55,7 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// The findings for every end, side and leg of a robot, from all pieces in their order.
+/// Makes the findings for every end, side and leg of a robot from the tallies of all pieces, in order.
 pub fn findings(robot: &Robot, guard: &CoreRobot, pieces: Vec<Tally>) -> Vec<Finding> {
     let mut pieces = pieces.into_iter();
     let mut of_one = || {

@@ -140,8 +140,8 @@ fn check_name(robot: &Robot, name: &str) -> Result<(), Failure> {
     }
 }
 
-/// Finds the best gait of all kinds; `None` if this process computed only a part of the search. Each kind is searched
-/// independently, so it can be a piece of its own; the trials of a round are shared out to all cores.
+/// Finds the best gait of all kinds; `None` if this process computed only a part of the search. Each kind is
+/// searched independently, so it can be a piece of its own; the trials of a round are distributed over all cores.
 fn search_all(tuning: &Tuning, args: &Args) -> Result<Option<BuiltGait>, Failure> {
     let rounds = args.rounds as usize;
     let kinds = args.spread.own(Kind::ALL.len());

@@ -78,19 +78,18 @@ pub enum SendError {
     /// The robot refused a value.
     #[error("{0}; nothing was saved, and the robot keeps its old settings")]
     Refused(LinkError),
-    /// Neither the new nor the old one is in effect.
+    /// Neither the new nor the old calibration is in effect as a whole.
     #[error("{0}; nothing was saved; send `load` or `factory`, or press the board's reset button")]
     Between(LinkError),
-    /// The robot reads it back otherwise.
+    /// The calibration that the robot reports differs from the one that was sent.
     #[error("the robot did not accept all of it; nothing was saved, and it keeps its old settings")]
     Differs,
 }
 
-/// Gives a robot a calibration, reads it back and saves it; if that fails, gives it
-/// its old settings.
+/// Sends a calibration to a robot, reads it back and saves it; if that fails, sends the robot its old settings.
 ///
 /// # Errors
-/// Fails for a refusal, or a connection that breaks.
+/// Fails if the robot refuses the calibration or reports another one, or if the connection breaks.
 pub fn send_calibration<P: Read + Write>(
     calibration: &Calibration,
     link: &mut Link<P>,

@@ -21,7 +21,8 @@ pub fn ask<P: Read + Write>(link: &mut Link<P>) -> Result<Calibration, LinkError
 /// Gives a robot settings, unsaved, in the order of a [`Transfer`].
 ///
 /// # Errors
-/// Returns the first refusal of those that remain; the robot then has a part of the settings.
+/// Fails if the connection breaks, or if lines are still refused in the last round: returns the first refusal of
+/// that round. The robot then has a part of the settings.
 pub fn apply<P: Read + Write>(
     calibration: &Calibration,
     link: &mut Link<P>,
@@ -87,7 +88,7 @@ mod tests {
 
     #[test]
     fn a_setting_that_the_current_ones_forbid_is_retried_after_the_others() {
-        // With 400 us either way a large trim and a large scale exclude each other.
+        // With a travel of 400 us to each side, a large trim and a large scale exclude each other.
         let narrow = PAPER.replace("min_us = 600.0", "min_us = 1100.0");
         let narrow = narrow.replace("max_us = 2400.0", "max_us = 1900.0");
         let mut link = robot_of(&narrow);

@@ -11,8 +11,8 @@ use lizard_core::console::word::Word;
 /// `deadman` while a person drives, ms. People set round numbers: a robot that has this one
 /// got it from a program that ended without restoring the setting.
 const DRIVEN_MS: u16 = 901;
-/// Time between two lines that keep the robot walking: two of three may be lost, and a
-/// robot's own setting may be somewhat shorter.
+/// Time between two lines that keep the robot walking: short enough that two of three may be lost, even if the
+/// robot's own setting is somewhat shorter than [`DRIVEN_MS`].
 pub(super) const LINE: Duration = Duration::from_millis(200);
 
 /// A line about `deadman`.

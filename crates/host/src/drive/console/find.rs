@@ -2,9 +2,9 @@
 
 use serialport::{SerialPortInfo, SerialPortType};
 
-/// USB vendor IDs of the chips on UNOs and their copies: Arduino's two, and that of
-/// WCH, the maker of the CH340.
+/// USB vendor IDs of the chips on UNOs and their copies: Arduino's two, and the one of WCH, the maker of the CH340.
 const VENDORS: [u16; 3] = [ARDUINO[0], ARDUINO[1], 0x1a86];
+/// Arduino's USB vendor IDs.
 pub(in crate::drive) const ARDUINO: [u16; 2] = [0x2341, 0x2a03];
 
 /// A USB serial port.
@@ -43,8 +43,8 @@ pub enum FindError {
     },
 }
 
-/// The USB serial ports of this machine, sorted by name. The user has to name other
-/// ports, such as those of a mainboard.
+/// The USB serial ports of this machine, sorted by name. Other ports, such as a mainboard's, are used only if the
+/// user names them.
 pub fn usb_ports() -> Vec<UsbPort> {
     let mut ports: Vec<UsbPort> = serialport::available_ports()
         .unwrap_or_default()

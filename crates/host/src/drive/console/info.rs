@@ -32,14 +32,15 @@ pub struct Args {
 #[derive(Debug, Serialize)]
 struct Board {
     port: String,
-    /// The firmware's version; null if the board was not reset and so has not said it.
+    /// The firmware's version; null if the board was not reset and so has not sent its banner.
     firmware: Option<String>,
-    /// The robot's name and hash; null if it has none, or has not said it.
+    /// The robot's name and hash; null if the board has no robot or has not sent its banner.
     robot: Option<Robot>,
     gait: String,
     fault: Option<String>,
-    /// Volts of the board, and of the servos where they are measured.
+    /// Supply voltage of the board, V; null if it is not measured.
     vcc: Option<f64>,
+    /// Voltage of the servos' rail, V; null if it is not measured.
     rail: Option<f64>,
     /// Null on a board without a robot.
     calibration: Option<Settings>,
@@ -168,8 +169,8 @@ impl Board {
     }
 }
 
-/// Asks for the status. A robot that has just been reset says no voltage until its converter has
-/// run, so it is asked again, for a second.
+/// Asks for the status. A robot that has just been reset reports no voltage until its converter has run, so it is
+/// asked again, for a second.
 fn settled<P: Read + Write>(link: &mut Link<P>) -> Result<Status, LinkError> {
     for _ in 0..9 {
         let status = status(link)?;

@@ -97,11 +97,12 @@ struct Dialogue {
     /// The clock of the session, so that a pause of this program does not count as silence of the robot.
     clock: Clock,
     recorder: Option<FileRecorder>,
+    /// Beginning of the status line: shows that the session is recorded.
     mark: &'static str,
 }
 
 impl Dialogue {
-    /// Sends the next line and reads the lines that have arrived; `show` prints those for the user.
+    /// Sends the next line and reads the lines that have arrived; `show` prints the lines that are for the user.
     fn turn(
         &mut self,
         board: &mut Connection,

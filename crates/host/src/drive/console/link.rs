@@ -48,7 +48,7 @@ pub enum LinkError {
     /// A line was not answered.
     #[error("the robot does not answer to `{0}`")]
     Silent(String),
-    /// The device sends lines, but not those of a lizard; this is its first line.
+    /// The device sends lines, but no lizard's lines; this is its first line.
     #[error(
         "this is not a lizard: it says `{0}`, not `# lizard ...`; is it the right port, and has \
          the board been flashed (lizard flash)?"

@@ -1,5 +1,5 @@
-//! The commands for a board on USB: `lizard console`, `info` and `calibrate`, with what is below
-//! them.
+//! The commands for a board on USB: `lizard console`, `info` and `calibrate`, and the session, link and terminal
+//! that they use.
 //!
 //! The logic is separate from the terminal and from the serial port, so the tests need
 //! neither: they use the firmware's core on this machine, and scripted input.

@@ -70,7 +70,7 @@ impl Prompt {
         PromptEvent::Edited
     }
 
-    /// Handles pasted text; each line end counts as Enter.
+    /// Handles pasted text; each line end acts like Enter.
     pub fn paste(&mut self, text: &str) -> Vec<PromptEvent> {
         let mut outcomes = Vec::new();
         for c in text.chars() {

@@ -36,7 +36,7 @@ pub enum Event {
         format: String,
         /// The port of the board.
         port: String,
-        /// The robot's first line; `None` if it was not reset.
+        /// The robot's first line; `None` if the board was not reset.
         banner: Option<String>,
     },
     /// A line that the user sent.

@@ -1,5 +1,4 @@
-//! The terminal: output lines scroll as usual; the status and the line being
-//! typed stay below them.
+//! The console's screen: output lines scroll as usual; the status line and the input line stay below them.
 
 use std::io::{self, Stdout, Write};
 
@@ -17,7 +16,7 @@ pub struct Screen {
     /// Columns of the two lines at the bottom, the second up to the cursor; `None` if they
     /// are not drawn.
     drawn: Option<[usize; 2]>,
-    /// The latest drawing: status line, prompt, cursor's column in it, terminal width.
+    /// The latest drawing: status line, visible part of the input, cursor's column in it, terminal width.
     last: Option<(String, String, usize, u16)>,
 }
 

@@ -27,7 +27,7 @@ const TIMEOUT: Duration = Duration::from_millis(2000);
 const STATUS_TIMEOUT: Duration = Duration::from_millis(600);
 /// Time from one `stop` to the next while none is answered.
 const STOP_INTERVAL: Duration = Duration::from_millis(250);
-/// Time after a `stop` within which answers to earlier ones arrive.
+/// Time after a `stop` within which answers to earlier `stop` lines may arrive.
 const LATE_ANSWERS: Duration = Duration::from_millis(500);
 /// Time without an answer to `stop` after which the user is told.
 const SILENCE: Duration = Duration::from_millis(800);
@@ -62,7 +62,7 @@ impl Question {
         }
     }
 
-    /// True if an answer can belong to the question: an `ok` has to begin with its word.
+    /// True if an answer can belong to the question: after `ok`, it has to begin with the question's word.
     fn is_answered_by(&self, answer: &str) -> bool {
         let line = match self {
             Self::Line(line) | Self::Deadman(line) => line.to_ascii_lowercase(),
@@ -82,9 +82,13 @@ impl Question {
 /// A `stop` that the robot has not answered yet.
 #[derive(Debug)]
 struct UnansweredStop {
+    /// Time at which the user asked to stop.
     since: Instant,
+    /// Time at which `stop` is sent again.
     next: Instant,
+    /// Number of times that `stop` was sent.
     times: u32,
+    /// True once the user has been told that no answer arrives.
     is_said: bool,
 }
 
@@ -93,7 +97,7 @@ struct UnansweredStop {
 pub struct Session {
     waiting: Option<(Question, Instant)>,
     halt: Option<UnansweredStop>,
-    /// True from a missing answer until the next one, so that the user is told once.
+    /// True from a missing answer until the next answer, so that the user is told once.
     is_silent: bool,
     /// The time until which answers to repeated `stop` lines may arrive.
     echoes_until: Instant,
@@ -190,7 +194,7 @@ impl Session {
         });
     }
 
-    /// The line to send now, if there is one.
+    /// Returns the line to send now; `None` if no line is due, or if an answer has to come first.
     pub fn next_line(&mut self, now: Instant) -> Option<String> {
         if let Some(halt) = &mut self.halt {
             if now < halt.next {

@@ -63,7 +63,7 @@ impl Status {
         })
     }
 
-    /// True in a gait or routine, which goes on moving by itself.
+    /// True while a gait or a routine runs, which continues by itself.
     pub fn is_moving(&self) -> bool {
         !matches!(self.gait.as_str(), "stand" | "pose" | "stop" | "rest")
     }
@@ -97,7 +97,7 @@ impl Status {
     }
 }
 
-/// Four angles with commas between them.
+/// Parses four angles, separated by commas; `None` for any other text.
 pub fn angles(text: &str) -> Option<[f64; 4]> {
     let angles: Option<Vec<f64>> = text.split(',').map(|angle| angle.parse().ok()).collect();
     angles?.try_into().ok()

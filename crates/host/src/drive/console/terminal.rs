@@ -10,14 +10,14 @@ pub fn is_open() -> bool {
     io::stdin().is_terminal()
 }
 
-/// Interval between checks of the terminal, and the number of checks before the program is
-/// ended.
+/// Interval between checks of the terminal.
 const CHECK_INTERVAL: Duration = Duration::from_millis(200);
+/// Number of consecutive checks without a terminal after which the program is ended.
 const CHECKS: u32 = 10;
 
-/// Ends the program two seconds after its terminal was closed, if it has not ended by itself:
-/// a wait for a key never returns if the terminal is closed in the middle of it. No file is
-/// left half written, since each file is written at once.
+/// Ends the program two seconds after its terminal was closed, if it has not ended by itself: a wait for a key
+/// never returns if the terminal is closed in the middle of it. A recorded session may lose its last poses then;
+/// other files exist only once they are complete.
 pub fn end_when_gone() {
     let check = || {
         let mut checks_gone = 0;

@@ -10,9 +10,9 @@ use super::stk500::{Board, Kind};
 
 /// A simulated board: its flash, and the faults to inject.
 pub struct Double {
-    /// All 32 KiB. Of the boot loader it holds only the first four bytes.
+    /// The 32 KiB of flash; of the boot loader they hold only the first four bytes.
     pub flash: Vec<u8>,
-    /// The kind of boot loader. It receives nothing at another speed.
+    /// The kind of boot loader. It receives nothing at a baud rate other than its own.
     pub kind: Kind,
     /// The chip signature that the loader reports.
     pub signature: [u8; 3],

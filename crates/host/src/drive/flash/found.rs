@@ -1,7 +1,7 @@
 //! The contents of a board's flash before it is written.
 //!
-//! Writing destroys the old contents, and the user may have chosen the wrong board, so they are
-//! reported first. The firmware does not run meanwhile, so they are read from flash.
+//! Writing destroys the old contents, and the user may have chosen the wrong board, so the contents are reported
+//! first. The firmware does not run during an upload and cannot be asked, so they are read from flash.
 
 use std::fmt;
 

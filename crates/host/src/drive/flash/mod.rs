@@ -81,7 +81,8 @@ struct Flashed {
 /// Runs `lizard flash`.
 ///
 /// # Errors
-/// Fails if there is no image, no board, or no board that can be written; the message says what is in its flash.
+/// Fails if the image cannot be made or read, no board is found, the upload fails, or the firmware does not answer
+/// afterwards. After a failed upload, the message says what the flash holds.
 pub fn run(args: Args) -> Result<(), Failure> {
     let image = match &args.image {
         Some(path) => file::read(path)?,
@@ -125,7 +126,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
 fn choose(ports: &[UsbPort]) -> Result<UsbPort, Failure> {
     find::choose(ports, "flash").map_err(|error| {
         Failure::Impossible(match error {
-            // Other commands suggest a simulated board here.
+            // In this message, other commands suggest a simulated board; `flash` needs a real one.
             FindError::None { .. } => "no board found: this machine has no USB serial port. \
                  Connect the UNO by a cable that carries data (some only charge), or name its \
                  port: lizard flash /dev/ttyACM0"
@@ -200,7 +201,7 @@ fn summary(done: Done, time: Duration) -> String {
     }
 }
 
-/// Waits for the firmware's first line and returns it.
+/// Waits for the firmware's first line and returns it, or a fixed text if the firmware answers without one.
 fn greet(board: SerialBoard) -> Result<String, link::LinkError> {
     let mut link = Link::new(board, link::Timeouts::default());
     let banner = link.greet()?;

@@ -9,7 +9,7 @@ use serialport::SerialPort;
 use super::stk500::Board;
 use crate::drive::console::port::{self, PortError};
 
-/// Time of each level of the reset lines, and between closing and reopening a port.
+/// Time for which each level of the reset lines is held, and pause between closing and reopening a port.
 const RESET_TIME: Duration = Duration::from_millis(50);
 
 /// A board's serial port, which can be reopened.
@@ -34,11 +34,12 @@ impl SerialBoard {
         })
     }
 
+    /// Returns the open port, or an error if the port could not be reopened.
     fn port(&mut self) -> io::Result<&mut Box<dyn SerialPort>> {
         self.port.as_mut().ok_or_else(|| ErrorKind::NotFound.into())
     }
 
-    /// Toggles the lines that reset a board: DTR on a UNO, RTS on some copies.
+    /// Toggles the lines that reset a board: DTR on a UNO, RTS on some clones.
     fn toggle_reset(&mut self) -> io::Result<()> {
         let port = self.port()?;
         for level in [false, true] {
@@ -57,6 +58,7 @@ impl SerialBoard {
         Ok(self.port()?.set_baud_rate(baud)?)
     }
 
+    /// Closes and reopens the port. Opening a port resets the board.
     fn open_again(&mut self) -> io::Result<()> {
         self.port = None;
         sleep(RESET_TIME);

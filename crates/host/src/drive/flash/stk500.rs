@@ -1,7 +1,7 @@
 //! The protocol of the boot loaders of UNO and Nano: STK500, version 1.
 //!
 //! After a reset by its button or by USB's DTR line, the chip starts in the boot loader. It
-//! blinks, then listens for about a second, and starts the program in flash if nobody calls.
+//! blinks, then listens for about a second, and starts the program in flash if no command arrives.
 //! One or a few bytes that it does not understand make it start that program at once; then only another reset
 //! starts the boot loader again. Commands and answers have no checksums, so written pages must be read back.
 //!
@@ -28,10 +28,10 @@ const READ_PAGE: u8 = 0x74;
 const READ_SIGNATURE: u8 = 0x75;
 /// The memory type in commands that read or write a page.
 const FLASH: u8 = b'F';
-/// The number of calls to the loader after one reset.
+/// Largest number of requests to synchronise ("calls") after one reset.
 const CALLS: usize = 5;
 
-/// A boot loader.
+/// A kind of boot loader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// The boot loader of UNOs, and of Nanos since 2018.
@@ -98,7 +98,7 @@ impl Default for Timeouts {
 /// The reason why a command failed.
 #[derive(Debug, thiserror::Error)]
 pub enum LoaderError {
-    /// No answer, or a part of one.
+    /// No answer within the time limit, or only part of one.
     #[error("the board does not answer")]
     Silent,
     /// An answer of the wrong form.
@@ -151,10 +151,10 @@ impl<B: Board> Loader<B> {
     /// Resets the board and calls a boot loader of this kind until it answers.
     ///
     /// # Errors
-    /// Returns [`LoaderError::Silent`] if no loader answers.
+    /// Returns [`LoaderError::Silent`] if no loader answers, and another [`LoaderError`] if the connection fails.
     pub fn call(&mut self, kind: Kind) -> Result<(), LoaderError> {
         self.board.reset(kind.baud())?;
-        // Output of the program from before the reset arrives in this time, too.
+        // The last output of the program that ran before the reset also arrives in this time.
         self.skip(self.timeouts.blink_time)?;
         for _ in 0..CALLS {
             self.board.write_all(&[GET_SYNC, CRC_EOP])?;
@@ -210,6 +210,7 @@ impl<B: Board> Loader<B> {
         self.command(&[LOAD_ADDRESS, low, high], &mut [])
     }
 
+    /// Sends a command, and fills `answer` with the bytes between the answer's [`IN_SYNC`] and its [`OK`].
     fn command(&mut self, bytes: &[u8], answer: &mut [u8]) -> Result<(), LoaderError> {
         self.board.write_all(&[bytes, &[CRC_EOP]].concat())?;
         let mut end = Deadline::after(self.timeouts.answer);
@@ -223,7 +224,7 @@ impl<B: Board> Loader<B> {
         Ok(())
     }
 
-    /// Searches for [`IN_SYNC`] followed by [`OK`], after any other bytes.
+    /// Waits for [`IN_SYNC`] followed by [`OK`], after any other bytes. Returns false if they do not arrive in time.
     fn wait_for_sync(&mut self, time: Duration) -> Result<bool, LoaderError> {
         let mut end = Deadline::after(time);
         let mut last = 0;
@@ -243,7 +244,7 @@ impl<B: Board> Loader<B> {
         }
     }
 
-    /// Waits, and discards all bytes received meanwhile.
+    /// Waits for the given time and discards all bytes received meanwhile.
     fn skip(&mut self, time: Duration) -> Result<(), LoaderError> {
         let mut end = Deadline::after(time);
         let mut bytes = [0; 256];

@@ -13,8 +13,9 @@ const FRAME: &str = "#f4f1ea";
 const EDGE: &str = "#b8b0a0";
 const LEAF: &str = "#8a8a8a";
 const STRUT: &str = "#6b6b6b";
-/// Radius of a foot, mm, and width of the plate's edge, mm.
+/// Radius of a foot, mm.
 const FOOT: f64 = 6.5;
+/// Width of the plate's edge, mm.
 const RIM: f64 = 0.6;
 
 /// A page onto which the robot is drawn.
@@ -28,17 +29,17 @@ pub struct Sheet<At> {
 }
 
 impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
-    /// A bar of this width in mm.
+    /// A bar between two points, `mm` millimetres wide.
     pub fn bar(&self, from: Vector, to: Vector, colour: &str, mm: f64) -> Line {
         line((self.at)(from), (self.at)(to), colour, mm * self.scale)
     }
 
-    /// A joint of this radius in mm.
+    /// A joint: a white disc with a radius of `mm` millimetres.
     pub fn joint(&self, point: Vector, mm: f64) -> Circle {
         self.disc(point, mm, "white")
     }
 
-    /// A disc of this radius in mm, with an edge.
+    /// A disc with an edge and a radius of `mm` millimetres.
     pub fn disc(&self, point: Vector, mm: f64, fill: &str) -> Circle {
         edged(
             circle((self.at)(point), mm * self.scale, fill),
@@ -47,7 +48,7 @@ impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
         )
     }
 
-    /// A rectangle by its centre, half its size and the radius of its corners, mm; it turns with the robot.
+    /// A rectangle that turns with the robot, given by its centre, half its size and the radius of its corners, mm.
     fn rectangle(&self, middle: Vector, half: Vector, corner: f64, fill: &str) -> Group {
         let (x, y) = (self.at)(middle);
         let [wide, long] = [half.x, half.y].map(|half| half * self.scale);
@@ -63,7 +64,7 @@ impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
         }
     }
 
-    /// The parts of the legs beside the plate and below it; `pads` are the colours of the feet.
+    /// Adds the parts of the legs beside and below the plate to `group`; `pads` are the colours of the feet.
     pub fn feet(&self, mut group: Group, legs: &[LegPlace; 4], pads: [&str; 4]) -> Group {
         for (i, leg) in legs.iter().enumerate() {
             let [driven, idle] = leg.joints;
@@ -75,7 +76,7 @@ impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
         group
     }
 
-    /// The plate and the servos in it.
+    /// Adds the plate and the servos in it to `group`.
     pub fn draw_plate(&self, mut group: Group, plate: &Plate) -> Group {
         let middle = Vector::default();
         let grown = |margin: f64| plate.half + Vector::new(margin, margin);
@@ -92,7 +93,7 @@ impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
         group
     }
 
-    /// The parts of the legs above the plate, and the arms of the servos' links that hold their struts.
+    /// Adds the parts of the legs above the plate, and the servo arms that drive their struts, to `group`.
     pub fn cranks(&self, mut group: Group, shafts: [Vector; 4], legs: &[LegPlace; 4]) -> Group {
         for (i, leg) in legs.iter().enumerate() {
             let [link, crank] = leg.strut;
@@ -111,7 +112,7 @@ impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
         group
     }
 
-    /// The screws that hold the struts to the servos' links. They lie above all other parts.
+    /// Adds the screws that hold the struts to the servo arms. They lie above all other parts.
     pub fn anchors(&self, group: Group, legs: &[LegPlace; 4]) -> Group {
         let screws = legs.iter().map(|leg| self.joint(leg.strut[0], 1.2));
         screws.fold(group, Group::add)

@@ -13,24 +13,29 @@ use crate::shared::ink::{
 
 const SIZE: (f64, f64) = (700.0, 640.0);
 
-/// The centre of the robot on the page, and the size of the area for it.
+/// The centre of the robot on the page.
 const MIDDLE: (f64, f64) = (196.0, 320.0);
+/// The size of the robot's area on the page.
 const ROOM: (f64, f64) = (250.0, 476.0);
 
 /// Teeth of an SG-90's spline.
 const TEETH: usize = 25;
+/// Angle from a tooth to the next, deg.
 const TOOTH: f64 = 360.0 / TEETH as f64;
 
-/// The enlarged spline: its centre, and its radii between the teeth and at their tips.
+/// The centre of the enlarged spline.
 const SPLINE: (f64, f64) = (558.0, 158.0);
+/// Radii of the enlarged spline between the teeth and at their tips.
 const RADII: (f64, f64) = (52.0, 62.0);
+/// Length of the crank on the enlarged spline.
 const CRANK: f64 = 150.0;
 
 /// The error in the example: the crank sits this many degrees clockwise of its correct angle.
 const EXAMPLE: f64 = 6.0;
 
-/// An SG-90 from above, mm: its width and length, and the distance of its shaft from one end.
+/// Width and length of an SG-90 from above, mm.
 const BODY: (f64, f64) = (12.2, 22.8);
+/// Distance of an SG-90's shaft from the nearer end of its case, mm.
 const SHAFT: f64 = 6.0;
 
 /// The cranks of a robot at their neutral angles, as SVG text.
@@ -55,7 +60,7 @@ fn cranks(robot: &Robot) -> [(Vector, Vector); 4] {
     })
 }
 
-/// Pixels per millimetre at which the robot fits.
+/// Pixels per millimetre at which the robot fits its area.
 fn scale(robot: &Robot) -> f64 {
     let (mut x, mut y) = (0.0f64, 0.0f64);
     for (shaft, tip) in cranks(robot) {
@@ -65,11 +70,12 @@ fn scale(robot: &Robot) -> f64 {
     (ROOM.0 / (2.0 * x)).min(ROOM.1 / (2.0 * y))
 }
 
+/// Position on the page of a point in the chassis frame.
 fn on_page(point: Vector, scale: f64) -> (f64, f64) {
     (MIDDLE.0 + scale * point.x, MIDDLE.1 - scale * point.y)
 }
 
-/// The point on the page at a distance and in a direction from another.
+/// The point on the page at a distance and in a direction (degrees counter-clockwise) from another point.
 fn point_toward(from: (f64, f64), degrees: f64, distance: f64) -> (f64, f64) {
     let (sin, cos) = sin_cos(degrees);
     (from.0 + distance * cos, from.1 - distance * sin)
@@ -91,6 +97,7 @@ fn arc(middle: (f64, f64), radius: f64, from: f64, to: f64, colour: &str) -> Pol
 fn arrow(middle: (f64, f64), radius: f64, from: f64, to: f64, colour: &str) -> Group {
     const BARB: f64 = 8.0;
     let tip = point_toward(middle, to, radius);
+    // The direction back along the arc at its end; the barbs lie to both sides of it.
     let along = if to > from { to - 90.0 } else { to + 90.0 };
     let barb = |lean: f64| point_toward(tip, along + lean, BARB);
     Group::new()
@@ -115,7 +122,7 @@ fn chassis(robot: &Robot) -> Group {
         1.5,
     ));
     for (servo, (shaft, _)) in cranks.into_iter().enumerate() {
-        // The body reaches from the shaft towards the middle.
+        // The longer part of a servo's case lies on the side of the shaft that faces the middle of the robot.
         let upper = if shaft.y > 0.0 {
             shaft.y + SHAFT
         } else {
@@ -222,7 +229,7 @@ fn example(robot: &Robot) -> Group {
     group
 }
 
-/// A spline with a tooth in this direction.
+/// The enlarged spline with a tooth at the angle `degrees`.
 fn spline(degrees: f64) -> Polygon {
     let corners: Vec<String> = (0..4 * TEETH)
         .map(|corner| {
@@ -241,7 +248,7 @@ fn spline(degrees: f64) -> Polygon {
         .set("stroke-width", 1.5)
 }
 
-/// A mark for the angle from the tooth in this direction to the next.
+/// A mark for the angle from the tooth at `degrees` to the next tooth.
 fn tooth(degrees: f64) -> Group {
     let (near, far) = (RADII.1 + 3.0, RADII.1 + 26.0);
     let ray = |degrees| {
@@ -264,7 +271,7 @@ fn tooth(degrees: f64) -> Group {
         ))
 }
 
-/// A compass rose that shows from where and in which direction angles are measured.
+/// A compass rose that shows the zero direction and the positive sense of angles.
 fn rose() -> Group {
     let middle = (546.0, 540.0);
     let caption = (middle.0, middle.1 - 84.0);

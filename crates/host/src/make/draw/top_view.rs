@@ -8,11 +8,11 @@ use super::body::Sheet;
 use crate::shared::ink::{DARK, SERVO, circle, edged, page};
 
 pub(super) const SIZE: (f64, f64) = (1000.0, 1110.0);
-/// Pixels per mm; fewer if the robot is too large for the page.
+/// Largest scale of the drawing, pixels per mm. The scale is smaller if the robot is too large for the page.
 const PIXELS_PER_MM: f64 = 3.1;
 /// Margins of the page in x and y for names and measures, pixels.
 const MARGIN: (f64, f64) = (80.0, 28.0);
-/// Reach of the skin beyond the head point, mm; beyond the tail point it is less.
+/// Reach of the skin beyond the head point, mm. Its reach beyond the tail point is smaller.
 pub(super) const SKIN_BEYOND: f64 = 30.0;
 /// Distance from the skin to its label, mm.
 pub(super) const NAME_BEYOND: f64 = 6.0;
@@ -47,6 +47,7 @@ pub fn top_view(robot: &Robot, solution: &Solution, has_labels: bool) -> String 
     page(SIZE, group)
 }
 
+/// A robot at a solved pose, and the scale at which it is drawn.
 pub(super) struct View<'a> {
     pub(super) robot: &'a Robot,
     pub(super) solution: &'a Solution,
@@ -119,6 +120,8 @@ impl<'a> View<'a> {
 
     /// Draws a lizard's pale outline, so that the mechanism looks like an animal.
     fn draw_skin(&self, group: Group) -> Group {
+        // The skin's coordinates, mm, are those for the paper's robot; they grow with the robot. Head and tail follow
+        // their points, and the flanks (`at`) are fixed to the chassis.
         let grown = self.size_ratio();
         let around = |point: Joint, x: f64, y: f64| {
             let (x, y) = self.page(point + Vector::new(x, y) * grown);
@@ -200,7 +203,7 @@ impl<'a> View<'a> {
         group
     }
 
-    /// Draws two cranks, two couplers and the end point that they carry.
+    /// Draws the five-bar of the head or the tail: two cranks, two couplers, and the point that they carry.
     fn draw_five_bar(&self, mut group: Group, end: End) -> Group {
         let (servos, point) = (end.servos(), self.solution.point(end));
         for servo in servos {
@@ -238,6 +241,7 @@ mod tests {
     use crate::shared::robot_file::named;
     use lizard_kinematics::{Pose, wrap};
 
+    /// Passes the paper's robot at this pose to `verdict`; `None` is the neutral pose.
     fn check(pose: Option<Pose>, verdict: impl Fn(&View)) {
         let robot = named("paper");
         let pose = pose.unwrap_or_else(|| robot.neutral());
@@ -245,6 +249,7 @@ mod tests {
         verdict(&View::new(&robot, &solution));
     }
 
+    /// A pose without symmetry.
     const ASKEW: [f64; 4] = [120.0, 50.0, 330.0, 200.0];
 
     #[test]

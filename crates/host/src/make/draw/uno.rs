@@ -10,25 +10,29 @@ use crate::shared::ink::{
 /// Pixels between neighbouring pins, a tenth of an inch.
 const PITCH: f64 = 14.0;
 
-/// The board, in tenths of an inch.
+/// Width and height of the board, in tenths of an inch.
 const BOARD: (f64, f64) = (27.0, 21.0);
 
-/// Rows of pins, in tenths of an inch from the board's lower edge.
+/// Height of the upper row of pins above the board's lower edge, in tenths of an inch.
 const UPPER_ROW: f64 = 20.0;
+/// Height of the lower row of pins above the board's lower edge, in tenths of an inch.
 const LOWER_ROW: f64 = 1.0;
 
 /// The power header: its first pin, in tenths of an inch from the left edge, and the names
 /// printed beside its pins.
 const POWER: (f64, [&str; 7]) = (12.0, ["IOREF", "RESET", "3.3V", "5V", "GND", "GND", "VIN"]);
+/// The pins to the left of D13: the first one, in tenths of an inch from the left edge, and the
+/// names printed beside them.
 const REFERENCES: (f64, [&str; 4]) = (7.4, ["SCL", "SDA", "AREF", "GND"]);
 
-/// Positions of D13, D7 and A0, from which the other pins are counted, in tenths of an inch from
-/// the left edge.
+/// Position of D13, from which D12 to D8 are counted, in tenths of an inch from the left edge.
 const D13: f64 = 11.4;
+/// Position of D7, from which D6 to D0 are counted, in tenths of an inch from the left edge.
 const D7: f64 = 18.0;
+/// Position of A0, from which A1 to A5 are counted, in tenths of an inch from the left edge.
 const A0: f64 = 20.0;
 
-/// The UNO's position on a page.
+/// An Arduino UNO at a position on a page.
 #[derive(Clone, Copy, Debug)]
 pub struct Uno {
     /// The board's upper left corner.
@@ -36,7 +40,7 @@ pub struct Uno {
 }
 
 impl Uno {
-    /// The lower right corner.
+    /// The board's lower right corner.
     pub fn far_corner(&self) -> (f64, f64) {
         self.at(BOARD.0, 0.0)
     }
@@ -61,7 +65,7 @@ impl Uno {
         self.at(POWER.0 + 3.0, LOWER_ROW)
     }
 
-    /// The board, with the pins of `used` emphasised.
+    /// Draws the board, with the pins of `used` emphasised.
     pub fn draw(&self, used: &[u8]) -> Group {
         let size = (BOARD.0 * PITCH, BOARD.1 * PITCH);
         let mut group = Group::new().add(edged(
@@ -138,7 +142,7 @@ impl Uno {
         }
     }
 
-    /// A point on the page, from tenths of an inch of the board.
+    /// A point on the page, from its position in tenths of an inch right of and above the board's lower left corner.
     fn at(&self, right: f64, up: f64) -> (f64, f64) {
         (
             self.corner.0 + right * PITCH,

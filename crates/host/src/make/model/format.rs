@@ -16,8 +16,8 @@ pub(super) enum Format {
 }
 
 impl Format {
-    /// The format of a file, by its ending. Without one, as in /dev/stdout, it is MuJoCo's, the
-    /// only one that holds everything in one file.
+    /// The format of a file, by its ending. A file without an ending, such as /dev/stdout, gets
+    /// MuJoCo's format, the only one that holds everything in one file.
     ///
     /// # Errors
     /// Fails for any other ending.

@@ -1,4 +1,4 @@
-//! `--long-foot`: a foot of the wrong length.
+//! `--long-foot`: gives feet of the model a length error.
 
 use std::str::FromStr;
 
@@ -45,7 +45,10 @@ impl FromStr for LongFoot {
     }
 }
 
-/// The length error of each foot, mm, servo order.
+/// The length error of each foot, mm, in servo order; 0 for a foot that is not given.
+///
+/// # Errors
+/// Fails if a foot is given twice.
 pub(super) fn length_errors(given: &[LongFoot]) -> Result<[f64; 4], Failure> {
     let mut long = [None; 4];
     for LongFoot { leg, mm } in given {

@@ -105,7 +105,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         also = format!(", and {} meshes in {}", meshes.len(), folder.display());
     }
     files::write(&args.file, text.as_bytes())?;
-    // If the file is a stream, such as /dev/stdout, it gets nothing else.
+    // A stream such as /dev/stdout gets only the model, without the message.
     if !args.file.is_file() {
         return Ok(());
     }
@@ -128,7 +128,7 @@ fn check_options(args: &Args, format: Format) -> Result<(), Failure> {
     Err(Failure::Input(wrong.to_owned()))
 }
 
-/// The servo angles for `--drive`, if given.
+/// The servo angles for `--drive`; `None` without this option.
 #[cfg(feature = "simulator")]
 fn course(args: &Args, robot: &Robot) -> Result<Option<Course>, Failure> {
     let drive = args.drive.as_deref();
@@ -147,7 +147,7 @@ fn course(args: &Args, _: &Robot) -> Result<Option<Course>, Failure> {
     }
 }
 
-/// The name of the folder for the meshes, beside the file.
+/// The name of the folder for the meshes, which lies beside the model's file.
 fn mesh_folder(file: &Path) -> String {
     let name = file.file_stem().unwrap_or_default().to_string_lossy();
     format!("{name}-meshes")

@@ -50,9 +50,9 @@ struct Pair<'a> {
     proved: f64,
     /// The least distance found at a pose that the guard accepts, mm; null if none is found.
     seen: Option<f64>,
-    /// The pose with that distance: A1 to A4, deg.
+    /// The pose at which `seen` was found: A1 to A4, deg; null if `seen` is null.
     pose: Option<[f64; 4]>,
-    /// A1 to A4, deg, near which `proved` could not be raised; null if it is near `seen`.
+    /// The pose (A1 to A4, deg) near which `proved` could not be raised; null if `proved` is close to `seen`.
     doubt: Option<[f64; 4]>,
 }
 
@@ -93,7 +93,7 @@ pub(super) fn proof(assembly: &Assembly) -> Proof {
     complete_proof(&Questions::new(assembly, |_, _| true), None)
 }
 
-/// Makes the proof from the known answers, and computes the missing ones.
+/// Makes the proof from the given answers, and computes those that are missing.
 fn complete_proof(questions: &Questions, answers: Option<Vec<Answer>>) -> Proof {
     let bar = bar(questions.count(), PAIRS);
     let answers = |index: usize| answers.as_ref()?.get(index).cloned();

@@ -18,8 +18,9 @@ use crate::shared::progress::bar;
 use crate::shared::{files, json};
 use crate::{Failure, PoseArgs, RobotFile};
 
-/// Step of the grid of the performance charts, and number of rings at which a circle is sampled.
+/// Step of the grid of the performance charts.
 const STEP: f64 = 0.005;
+/// Number of rings at which an inscribed circle of the performance charts is sampled.
 const RINGS: usize = 16;
 
 /// Draw all charts into a folder, as SVG.
@@ -44,6 +45,7 @@ pub struct Args {
     robot: RobotFile,
 }
 
+/// A chart and its files, with the field names of `--json`.
 #[derive(Serialize)]
 struct ChartFiles {
     chart: &'static str,

@@ -55,7 +55,7 @@ pub fn performance(points: &[Point], step: f64) -> String {
             colours: VIRIDIS,
         };
         let count = (SUM / step).round() as usize;
-        // Cells are centred on the grid points.
+        // Cells are centred on the grid points, so the map extends half a cell beyond the axes.
         let wide = Plot {
             corner: plot.at(-step / 2.0, SUM + step / 2.0),
             size: (PANEL * (SUM + step) / SUM, PANEL * (SUM + step) / SUM),

@@ -18,19 +18,23 @@ const AXES: [Axis<'static>; 2] = [
     Axis::new(40.0, "x, mm to the right of the plate's middle"),
     Axis::new(40.0, "y, mm ahead of it"),
 ];
-/// Half the width of the drawn square, and the width of its cells, mm.
+/// Half the width of the drawn square, mm.
 const REACH: f64 = 160.0;
+/// Width of a cell of the drawn square, mm.
 const CELL: f64 = 2.0;
 /// Range of the servo angles that are tried to either side of neutral, deg.
 const RANGE: i32 = 80;
-/// Colours of the areas that the linkage allows and that the guard accepts.
+/// Colours of the tail's areas: the one that the linkage allows, and the one that the guard accepts.
 const TAIL: [&str; 2] = ["#cfe3f1", "#4a9bd0"];
+/// Colours of the sliders' areas: the one that the linkage allows, and the one that the guard accepts.
 const SLIDERS: [&str; 2] = ["#f9e0cc", "#e08a4a"];
+/// Colour of the arcs of the feet that the guard accepts.
 const LEGS: &str = "#117733";
 
 /// Indices of cells of the drawn square.
 type Cells = HashSet<(i32, i32)>;
 
+/// The cell that contains a point.
 fn cell(point: Vector) -> (i32, i32) {
     (
         (point.x / CELL).floor() as i32,
@@ -137,12 +141,14 @@ fn accepted_solutions(robot: &Robot, turns: impl Fn(f64, f64) -> [f64; 4]) -> Ve
         .collect()
 }
 
+/// The cells that the tail's point reaches in poses that the guard accepts.
 fn accepted_tail(robot: &Robot) -> Cells {
     let poses = accepted_solutions(robot, |a, b| [0.0, 0.0, a, b]);
     poses.iter().map(|pose| cell(pose.tail_point())).collect()
 }
 
-/// The middles of both sliders in mirror-symmetric poses, for which the guard of head and tail accepts the most.
+/// The cells that the middles of both sliders reach in mirror-symmetric poses. The guard accepts the widest range of
+/// head and tail angles in such poses.
 fn accepted_sliders(robot: &Robot) -> Cells {
     let poses = accepted_solutions(robot, |a, b| [a, -a, -b, b]);
     let points = poses.iter().flat_map(|pose| {
@@ -162,7 +168,7 @@ fn middle(robot: &Robot, side: Side, rear: Vector, front: Vector) -> Vector {
     robot.lizard().shafts()[side.servos()[1]] + (rear + front) * 0.5
 }
 
-/// The middles of both sliders for all angles of their arms at which the travel is within the stroke.
+/// The cells of the middles of both sliders for all angles of their arms at which the travel is within the stroke.
 fn linkage_sliders(robot: &Robot) -> Cells {
     let limits = robot.limits();
     let mut cells = Cells::new();
@@ -190,7 +196,8 @@ fn is_in_tail(robot: &Robot, point: Vector) -> bool {
     local.y >= 0.0 && Workspace::of(&robot.lizard().end(End::Tail)).contains(local)
 }
 
-/// The positions of a foot while only its servo turns from neutral. If guarded, only those that the guard accepts.
+/// The positions of a foot while only its servo turns from neutral. With `is_guarded`, leaves out positions that the
+/// guard refuses.
 fn foot_places(
     robot: &Robot,
     servo: usize,
@@ -207,11 +214,13 @@ fn foot_places(
     turns.filter_map(place).collect()
 }
 
+/// The position of a foot with its servo at `angle`, without lag.
 fn foot_place(robot: &Robot, servo: usize, angle: f64) -> (f64, f64) {
     let foot = robot.legs()[servo].at(angle, angle).foot;
     (foot.x, foot.y)
 }
 
+/// The path of a foot in the gait `walk`; empty if the robot does not have that gait.
 fn foot_path(robot: &Robot, servo: usize) -> Vec<(f64, f64)> {
     let gait = robot.gait("walk").into_iter();
     let phases = gait.flat_map(|gait| (0..=100).map(move |i| gait.pose(f64::from(i) / 100.0)));
@@ -254,7 +263,7 @@ mod tests {
         let all = (0..321).flat_map(|i| (0..321).map(move |j| Vector::new(step(i), step(j))));
         let area = all.filter(|at| is_in_tail(&robot, *at)).count() as f64;
         assert!((area / 7446.3 - 1.0).abs() < 0.01, "{area}");
-        // The middle of a slider is half the sum of two arms of 30 mm: in a disc of 30 mm.
+        // The middle of a slider is half the sum of two arms of 30 mm, so it lies in a disc with a radius of 30 mm.
         for (x, y) in linkage_sliders(&robot) {
             let (x, y) = (CELL * (f64::from(x) + 0.5), CELL * (f64::from(y) + 0.5));
             let distance = (x.abs() - 10.0).hypot(y);

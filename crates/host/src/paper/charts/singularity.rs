@@ -9,6 +9,7 @@ use crate::shared::ink::{DARK, circle, cross, edged, line, page, rectangle, text
 use crate::shared::plot::{Axis, BLUES, IMPOSSIBLE, Plot, Scale, draw_entry};
 
 const SIZE: (f64, f64) = (1500.0, 860.0);
+/// Range of the angles in the left panel, deg.
 const WHOLE: (f64, f64) = (0.0, 180.0);
 /// Colours and dashes of the paths: Okabe and Ito's colours and more dark ones.
 /// Dashes distinguish paths whose colours look alike.
@@ -24,7 +25,9 @@ const STYLES: [(&str, &str); 10] = [
     ("#332288", ""),
     ("#332288", "7 5"),
 ];
+/// Colour of the singular curves of A1's arm.
 const A1: &str = "#882255";
+/// Colour of the singular curves of A2's arm.
 const A2: &str = "#b58900";
 
 /// Draws the head's least margin over theta1 and theta4, with the paths of the gaits.
@@ -159,8 +162,8 @@ fn least(robot: &Robot, theta1: f64, theta4: f64) -> Option<f64> {
     (!broken).then(|| margins.into_iter().fold(1.0, f64::min))
 }
 
-/// Each path in the plane with the names of the gaits that take it. A reversed gait
-/// takes the same path.
+/// The paths of all gaits in the plane of theta1 and theta4, each with the names of the gaits that take it. A gait
+/// and its reverse take the same path.
 fn paths(robot: &Robot) -> Vec<(String, Vec<(f64, f64)>)> {
     let mut paths: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
     for gait in robot.gaits() {
@@ -177,6 +180,7 @@ fn paths(robot: &Robot) -> Vec<(String, Vec<(f64, f64)>)> {
     paths
 }
 
+/// The path of a gait in the plane of theta1 and theta4; a single point if the gait moves neither.
 fn path(gait: &CheckedGait) -> Vec<(f64, f64)> {
     let angles_at = |i: i32| {
         let [theta1, theta4, ..] = gait.angles(f64::from(i) / 500.0);
@@ -191,7 +195,7 @@ fn path(gait: &CheckedGait) -> Vec<(f64, f64)> {
     }
 }
 
-/// True if the two paths are close to each other everywhere.
+/// True if every point of each path is within 0.5 deg of a point of the other.
 fn are_close(first: &[(f64, f64)], second: &[(f64, f64)]) -> bool {
     let near = |point: &(f64, f64), path: &[(f64, f64)]| {
         path.iter()
@@ -222,8 +226,8 @@ fn surroundings(paths: &[(String, Vec<(f64, f64)>)]) -> Plot {
 fn draw_curves(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
     let bars = robot.lizard().end(End::Head);
     group = draw_sweep(group, plot, |theta1| bars.singular_with(theta1).collect());
-    // A sweep over theta4, too, for curves that are steep over theta1. For it the
-    // five-bar is mirrored: left and right change places.
+    // Curves that are steep over theta1 also need a sweep over theta4. It uses the mirrored
+    // five-bar, in which left and right change places.
     let mirrored = FiveBar {
         base: bars.base,
         crank_left: bars.crank_right,
@@ -255,7 +259,8 @@ fn draw_curves(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
     group
 }
 
-/// Draws segments from the singular poses at each angle to those at the next.
+/// Draws a segment from each singular pose to the nearest one of the same kind at the previous angle, if that is
+/// close.
 fn draw_sweep(mut group: Group, plot: &Plot, poses_at: impl Fn(f64) -> Vec<SingularPose>) -> Group {
     const STEP: f64 = 0.5;
     let inside = |pose: &&SingularPose| {

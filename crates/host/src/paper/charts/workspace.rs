@@ -1,4 +1,4 @@
-//! Charts of the points that the head can reach, and of the conditioning there.
+//! Charts of the points that the head can reach, and of the local conditioning index at them.
 
 use lizard_kinematics::{Circle, End, Vector, Workspace};
 use lizard_robot::Robot;
@@ -149,7 +149,7 @@ fn ring(plot: &Plot, centre: Vector, radius: f64, colour: &str, width: f64) -> R
     )
 }
 
-/// The closed paths of the head in the gesture `look`.
+/// The closed path of the head in the gesture `look`; empty if the robot does not have that gesture.
 fn look_paths(robot: &Robot) -> Vec<Vec<(f64, f64)>> {
     robot
         .gait("look")

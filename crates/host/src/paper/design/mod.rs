@@ -24,7 +24,7 @@ pub use search::{Demands, Design, Search, design, ranked};
 
 /// Number of rings at which the inscribed circle of a single design is sampled.
 const FINE: usize = 128;
-/// Number of rings at which the circles of many designs are sampled; see `FINE`.
+/// Number of rings at which the inscribed circles are sampled if there are many designs.
 pub const COARSE: usize = 32;
 
 /// Dimensional synthesis of the head and tail five-bar.
@@ -111,8 +111,8 @@ fn base(text: &str) -> Result<f64, String> {
 /// Prints the synthesis, the charts or the ranking.
 ///
 /// # Errors
-/// Fails for a wrong robot.toml, proportions that make no mechanism, an output that cannot be
-/// written.
+/// Fails for a wrong robot.toml, proportions that make no mechanism, `--part` without `--search`, or an output that
+/// cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     if args.spread.part().is_some() && !args.search {
         return Err(Failure::Input(
@@ -363,7 +363,7 @@ fn print_ranking(
             given.r1, given.r2, given.r3
         )?,
         Some(mut ours) => {
-            // Its score refers to the best of the list, as theirs do.
+            // Scores are relative to the best value of each criterion, which may be that of the given design.
             let best =
                 |value: fn(&Design) -> f64| designs.iter().map(value).fold(value(&ours), f64::max);
             let (lci, margin, stride) = (best(|d| d.lci), best(|d| d.margin), best(|d| d.stride));

@@ -14,24 +14,24 @@ pub struct Performance {
     pub area: f64,
     /// Radius of the maximal inscribed circle; 0 if none.
     pub r_mic: f64,
-    /// Height of its centre over the base.
+    /// Height of the inscribed circle's centre above the base; 0 if there is no circle.
     pub y_mic: f64,
-    /// The index over that circle; `None` without a circle.
+    /// Local conditioning index over the inscribed circle; `None` if there is no circle.
     pub lci: Option<Conditioning>,
 }
 
 /// Statistics of the local conditioning index over the inscribed circle.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Conditioning {
-    /// Mean over the area (the global conditioning index).
+    /// Mean index over the circle's area (the global conditioning index).
     pub mean: f64,
-    /// The least value, on the rim: 0 where the circle touches the workspace's edge.
+    /// Least index, which is on the rim: 0 where the circle touches the workspace's edge.
     pub least: f64,
-    /// The largest value.
+    /// Largest index in the circle.
     pub most: f64,
-    /// Share of the area above the paper's 0.7.
+    /// Share of the circle's area in which the index is above 0.7, the paper's bound.
     pub share_above: f64,
-    /// Radius of the concentric circle within which all is at least 0.7.
+    /// Radius of the concentric circle within which the index is at least 0.7, the paper's bound.
     pub radius_above: f64,
 }
 
@@ -42,7 +42,7 @@ pub fn lci(bars: &FiveBar, point: Vector) -> f64 {
 }
 
 impl Performance {
-    /// Computes everything; `rings` sets how finely the circle is sampled.
+    /// Computes the performance of a five-bar. The inscribed circle is sampled at `rings` rings.
     pub fn of(bars: &FiveBar, rings: usize) -> Self {
         let workspace = Workspace::of(bars);
         let circle = workspace.inscribed_circle();
@@ -99,6 +99,7 @@ impl Conditioning {
         }
     }
 
+    /// Radius of the concentric circle within which the index is at least the claim.
     fn radius_above(bars: &FiveBar, circle: Circle, rings: usize) -> f64 {
         let step = circle.radius / (2 * rings) as f64;
         (0..4 * rings)

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// r1 + r2 + r3.
 pub const SUM: f64 = 0.9;
 
-/// The smallest r1, r2 or r3 that a design may have; values nearer to 0 make D overflow.
+/// The smallest r1, r2 or r3 that a design may have; smaller values make D overflow.
 const MIN_LINK: f64 = 0.001;
 
 /// A point of the design space.

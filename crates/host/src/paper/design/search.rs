@@ -19,15 +19,15 @@ pub struct Demands {
     pub base: f64,
     /// Chassis length l10, mm.
     pub chassis: f64,
-    /// Leg crank, mm, for the stride.
+    /// Length of a leg's crank, mm; it determines the stride.
     pub leg: f64,
-    /// Least margins and slider travel.
+    /// Least margins, and range of the slider travel.
     pub limits: Limits,
     /// Servo travel to either side of neutral, degrees.
     pub travel: f64,
     /// Shortest link that can be made, mm.
     pub shortest: f64,
-    /// Sweep at which index and margin are compared, degrees.
+    /// Sweep within which conditioning index and margin are compared, degrees to either side of neutral.
     pub sweep: f64,
 }
 
@@ -43,15 +43,15 @@ pub struct Design {
     pub neutral: f64,
     /// Largest safe sweep to either side, degrees.
     pub sweep: f64,
-    /// The stride of a foot with that sweep, mm.
+    /// Stride of a foot with the largest safe sweep, mm.
     pub stride: f64,
-    /// Least margin at the demanded sweep.
+    /// Least margin within the demanded sweep.
     pub margin: f64,
-    /// Mean conditioning index at the demanded sweep.
+    /// Mean conditioning index within the demanded sweep.
     pub lci: f64,
     /// Geometric mean of conditioning index, margin and stride, each as a share of the best of all designs.
     pub score: f64,
-    /// True if no other design is better in all three.
+    /// True if no other design is better in conditioning index, margin and stride.
     pub pareto: bool,
 }
 
@@ -112,8 +112,8 @@ pub fn ranked(pieces: Vec<Vec<Design>>) -> Vec<Design> {
     designs
 }
 
-/// The best design with these proportions; `None` if it cannot sweep as far as demanded, or has a link that is too
-/// short.
+/// The best design with these proportions, not yet scored; `None` if it cannot sweep as far as demanded, or has a
+/// link that is too short.
 pub fn design(proportions: Proportions, demands: &Demands) -> Option<Design> {
     let d = proportions.scale_for_base(demands.base);
     let bars = proportions.at_scale(d);
@@ -163,6 +163,7 @@ fn largest_sweep(bars: &FiveBar, neutral: f64, demands: &Demands) -> f64 {
 /// Sample positions across the sweep, from -1 to 1.
 const SWEEP_SAMPLES: [f64; 9] = [-1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75, 1.0];
 
+/// True if the five-bar and the sliders keep the limits at all sampled angles of the sweep.
 fn meets_demands(bars: &FiveBar, neutral: f64, sweep: f64, demands: &Demands) -> bool {
     let limits = &demands.limits;
     let slider = slider(bars, demands);
@@ -217,6 +218,7 @@ fn quality(bars: &FiveBar, neutral: f64, sweep: f64) -> (f64, f64) {
     )
 }
 
+/// Scores the designs and sorts them, best first.
 fn rank(designs: &mut [Design]) {
     let best =
         |value: fn(&Design) -> f64| designs.iter().map(value).fold(f64::MIN_POSITIVE, f64::max);

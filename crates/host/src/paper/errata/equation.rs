@@ -7,7 +7,7 @@ pub type ErrorFn = fn(&Sample) -> Option<f64>;
 
 /// A printed equation.
 pub struct Equation {
-    /// The place in the paper.
+    /// The equation's place in the paper.
     pub place: &'static str,
     /// The equation as printed.
     pub printed: &'static str,
@@ -20,12 +20,12 @@ pub struct Equation {
     pub clockwise: Option<ErrorFn>,
     /// The corrected form, and its error.
     pub corrected: Option<(&'static str, ErrorFn)>,
-    /// A special case to examine, and the error of the printed form there; it has no verdict of its own.
+    /// A special case, and the error of the printed form in that case; it does not affect the verdict.
     pub special_case: Option<(&'static str, ErrorFn)>,
 }
 
 impl Equation {
-    /// An equation as printed, and its error in a unit.
+    /// Creates an equation without a correction; `miss` returns the error of the printed form in `unit`.
     pub const fn new(
         place: &'static str,
         printed: &'static str,
@@ -43,19 +43,19 @@ impl Equation {
         }
     }
 
-    /// Adds the error of the clockwise reading.
+    /// Adds the error if right-hand angles are read clockwise from -x.
     pub const fn clockwise(mut self, miss: ErrorFn) -> Self {
         self.clockwise = Some(miss);
         self
     }
 
-    /// Adds the corrected form.
+    /// Adds the corrected form and its error.
     pub const fn corrected(mut self, form: &'static str, miss: ErrorFn) -> Self {
         self.corrected = Some((form, miss));
         self
     }
 
-    /// Adds a special case to examine.
+    /// Adds a special case, and the error of the printed form in that case.
     pub const fn with_special_place(mut self, place: &'static str, miss: ErrorFn) -> Self {
         self.special_case = Some((place, miss));
         self
@@ -91,7 +91,7 @@ impl Misses {
         }
     }
 
-    /// True if only rounding errors were found.
+    /// True if the form has a real value at every sample, and its errors are only from rounding.
     pub fn holds(&self) -> bool {
         self.worst < Self::ROUNDING && self.unreal == 0.0
     }

@@ -174,13 +174,13 @@ fn loop_gap(links: [(f64, f64); 4], base: f64) -> f64 {
     (a + b - c - d - Vector::new(base, 0.0)).length()
 }
 
-/// Tangent of half an angle by the quadratic formula.
+/// Tangent of half an angle by the quadratic formula; `sign` selects the root. `None` if the roots are not real.
 fn root(a: f64, b: f64, c: f64, sign: f64) -> Option<f64> {
     let under = b * b - 4.0 * a * c;
     (under >= 0.0).then(|| (-b + sign * under.sqrt()) / (2.0 * a))
 }
 
-/// A, B, C as printed, at some theta4.
+/// The coefficients A, B, C as printed, at this theta4 (rad) and the sample's theta1.
 fn abc(s: &Sample, theta4: f64) -> (f64, f64, f64) {
     let Links {
         l0, l1, l2, l3, l4, ..
@@ -197,7 +197,7 @@ fn abc(s: &Sample, theta4: f64) -> (f64, f64, f64) {
     )
 }
 
-/// D, E, F as printed, with the sign of l0 in K4 given.
+/// The coefficients D, E, F; `base_sign` is the sign of l0 in K4: 1 as printed, -1 as corrected.
 fn def_coefficients(s: &Sample, base_sign: f64) -> (f64, f64, f64) {
     let Links {
         l0, l1, l2, l3, l4, ..
@@ -213,7 +213,7 @@ fn def_coefficients(s: &Sample, base_sign: f64) -> (f64, f64, f64) {
     )
 }
 
-/// The theta4 at which A vanishes for the sample's theta1, radians, if any in
+/// The theta4 at which A vanishes for the sample's theta1, radians; `None` if there is none in
 /// [-90, 90] degrees.
 fn vanishing_a(s: &Sample) -> Option<f64> {
     let a = |theta4: f64| abc(s, theta4).0;

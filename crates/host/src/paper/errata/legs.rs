@@ -67,20 +67,22 @@ pub const EQUATIONS: &[Equation] = &[
     ),
 ];
 
-/// The servo angles that drive the legs, by the paper's numbers.
+/// The paper's numbers of the angles that drive the front legs.
 const FRONT: &[usize] = &[1, 4];
+/// The paper's numbers of the angles that drive the back legs.
 const BACK: &[usize] = &[8, 5];
+/// The paper's numbers of the angles that drive all legs.
 const ALL: &[usize] = &[1, 4, 8, 5];
 
-/// The largest error over these legs.
+/// The largest error over these legs; `None` if there is no real value for one of them.
 fn worst_of(s: &Sample, legs: &[usize], miss: impl Fn(f64) -> Option<f64>) -> Option<f64> {
     legs.iter()
         .map(|&leg| miss(s.angles().t[leg]))
         .try_fold(0.0, |worst: f64, value| Some(worst.max(value?)))
 }
 
-/// The error of the follower's angle by G, H, I as printed, or with another H. In a parallelogram the follower has
-/// the angle of the crank.
+/// The error of the follower's angle by G, H, I as printed, or with another H; `sign` selects the root. In a
+/// parallelogram the follower has the angle of the crank.
 fn follower(s: &Sample, legs: &[usize], sign: f64, h: Option<f64>) -> Option<f64> {
     let Leg {
         ground,
@@ -102,8 +104,8 @@ fn follower(s: &Sample, legs: &[usize], sign: f64, h: Option<f64>) -> Option<f64
     })
 }
 
-/// The error of the coupler's angle by J, K, L, with the sign of the terms in lg12: -1 as printed, +1 as it should
-/// be. In a parallelogram this angle is 0.
+/// The error of the coupler's angle by J, K, L; in a parallelogram this angle is 0. `term_sign` is the sign of the
+/// terms in lg12, -1 as printed and +1 as corrected; `sign` selects the root.
 fn coupler(s: &Sample, legs: &[usize], term_sign: f64, sign: f64) -> Option<f64> {
     let Leg {
         ground,
@@ -125,7 +127,8 @@ fn coupler(s: &Sample, legs: &[usize], term_sign: f64, sign: f64) -> Option<f64>
     })
 }
 
-/// Tangent of half an angle by the quadratic formula. Rounding may make a radicand of zero slightly negative.
+/// Tangent of half an angle by the quadratic formula; `sign` selects the root. `None` if the roots are not real.
+/// Rounding may make a radicand of zero slightly negative.
 fn half_angle_tangent(a: f64, b: f64, c: f64, sign: f64) -> Option<f64> {
     let under = b * b - 4.0 * a * c;
     (under > -1e-12).then(|| (-b + sign * under.max(0.0).sqrt()) / (2.0 * a))

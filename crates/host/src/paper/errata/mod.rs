@@ -57,10 +57,11 @@ pub struct Entry {
     /// Share of the samples at which the printed form has no real value.
     unreal: f64,
     unit: &'static str,
-    /// The largest error at a place that needs a closer look, in `unit`, and that place.
+    /// The largest error of the printed form in a special case, in `unit`, and the name of that case; null without
+    /// one.
     aside: Option<(f64, &'static str)>,
-    /// True if it holds with right-hand angles measured clockwise from -x; null if the drawings
-    /// do not suggest that reading.
+    /// True if the printed form holds with right-hand angles measured clockwise from -x; null if
+    /// the drawings do not suggest that reading.
     holds_clockwise: Option<bool>,
     corrected: Option<&'static str>,
     corrected_worst: Option<f64>,
@@ -140,7 +141,7 @@ impl Entry {
         }
     }
 
-    /// The largest error in words, `rounding` if the equation holds; then that of `aside`.
+    /// The largest error in words, or `rounding` if the equation holds, followed by the error of the special case.
     fn format_error(&self) -> String {
         let mut words = self.plain_miss();
         if let Some((worst, place)) = self.aside {
@@ -150,6 +151,7 @@ impl Entry {
         words
     }
 
+    /// The largest error in words, or `rounding` if the equation holds, without the special case.
     fn plain_miss(&self) -> String {
         if self.holds {
             return "rounding".to_string();

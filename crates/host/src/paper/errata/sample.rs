@@ -49,8 +49,8 @@ pub struct Angles {
 }
 
 impl Sample {
-    /// `count` poses with theta1 and -theta5 in [90, 180], theta4 and -theta8 in
-    /// [0, 90]: all that the outward elbows allow on the robot's own side.
+    /// `count` poses whose cranks point outward and away from the chassis: theta1 and -theta5 in [90, 180],
+    /// theta4 and -theta8 in [0, 90]. Poses without a solution are skipped.
     pub fn many(count: usize) -> impl Iterator<Item = Self> {
         let lizard = paper_lizard();
         let mut random = Random(1);
@@ -106,11 +106,11 @@ pub fn angle_error(a: f64, b: f64) -> f64 {
     lizard_kinematics::wrap((a - b) * 180.0 / PI).abs()
 }
 
-/// SplitMix64: the table must be the same on every run and every host.
+/// A SplitMix64 generator: the table of errata must be the same on every run and every host.
 struct Random(u64);
 
 impl Random {
-    /// Uniform in [0, 1).
+    /// Returns the next number, uniform in [0, 1).
     fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;

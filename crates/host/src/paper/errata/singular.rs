@@ -127,6 +127,7 @@ pub const EQUATIONS: &[Equation] = &[
     })
     .corrected("sin(θ3 - θ2) = 0", |s| {
         let t = s.angles().t;
+        // l2 l3 = 2500 mm^2.
         Some(((t[3] - t[2]).sin() - determinant_sine(&passive_block(s, 0), 2500.0)).abs())
     })
     .with_special_place("the neutral pose, which it flags", |s| {
@@ -148,6 +149,7 @@ pub const EQUATIONS: &[Equation] = &[
     })
     .corrected("sin(θ7 - θ6) = 0", |s| {
         let t = s.angles().t;
+        // l7 l8 = 2500 mm^2.
         Some(((t[7] - t[6]).sin() - determinant_sine(&passive_block(s, 2), 2500.0)).abs())
     }),
     Equation::new(
@@ -213,8 +215,7 @@ fn home_angle(s: &Sample) -> f64 {
         .to_degrees()
 }
 
-/// The head's type-2 margin at the neutral pose, and theta2 + theta3 there in
-/// radians.
+/// The head's type-2 margin and theta2 + theta3 (radians), both in the neutral pose.
 fn neutral(s: &Sample) -> Option<(f64, f64)> {
     let theta1 = home_angle(s);
     let pose = s
@@ -226,13 +227,13 @@ fn neutral(s: &Sample) -> Option<(f64, f64)> {
     Some((pose.type2, sum.to_radians()))
 }
 
-/// The 2x2 block of K or K* for the left and the right bar of an end.
+/// The 2x2 block of K or K* for the left and the right bar of the head or the tail.
 struct Block {
     /// Computes the true block, by rows.
     truth: fn(&Sample) -> [f64; 4],
     /// The indices of the left and the right bar's angles in the paper.
     angles: [usize; 2],
-    /// The indices of the bars' lengths, left and right.
+    /// The indices of the left and the right bar's lengths, 1 for l1.
     bars: [usize; 2],
 }
 
@@ -330,7 +331,8 @@ fn passive_block(s: &Sample, column: usize) -> [f64; 4] {
     ]
 }
 
-/// A side's block: the rear arm's column, then the front arm's with `sign` before its sine.
+/// The 2x2 block of a slider's side: the column of the rear arm, then that of the front arm with `sign` before its
+/// sine.
 fn side_block([rear, front]: [f64; 2], rear_angle: f64, front_angle: f64, sign: f64) -> [f64; 4] {
     [
         rear * rear_angle.sin(),
@@ -346,6 +348,7 @@ fn determinant_sine([a, b, c, d]: &[f64; 4], lengths: f64) -> f64 {
     -(a * d - b * c) / lengths
 }
 
+/// The degrees of freedom of a leg, which equal the number of its drives.
 fn mobility_of_leg(s: &Sample) -> f64 {
     crate::paper::mobility::leg_freedoms(&s.lizard, &s.s) as f64
 }

@@ -122,8 +122,8 @@ pub const EQUATIONS: &[Equation] = &[
     ),
 ];
 
-/// The error, in radius, of the circle equation with this y term, at random points on the limits of the arms'
-/// reach.
+/// The error, in radius, of the circle equation at random points on the limits of the arms' reach. `term` returns the
+/// equation's term in y.
 fn circle_error(s: &Sample, term: fn(f64) -> f64) -> Option<f64> {
     let bars = s.lizard.end(End::Head);
     let mut worst = 0.0_f64;
@@ -156,8 +156,8 @@ fn lci_at(s: &Sample, shrink: f64) -> f64 {
         })
 }
 
-/// Number of the links l0 to l19 that the table does not list, where `read_length` corrects the number of each
-/// entry.
+/// Number of the links l0 to l19 that the table does not list. `read_length` returns the link number of an entry, as
+/// printed or corrected, from its printed number and its length.
 fn count_unlisted_links(read_length: fn(usize, f64) -> usize) -> f64 {
     let named = |link: usize| {
         TABLE

@@ -32,7 +32,7 @@ pub fn label(robot: &CoreRobot) -> String {
     format!("{name} {:08x}", robot.hash())
 }
 
-/// The robot in the contents of flash, which start at address 0.
+/// The robot in the contents of flash, which start at address 0; `None` if there is no valid robot.
 pub(crate) fn robot_in(flash: &[u8]) -> Option<CoreRobot<'_>> {
     CoreRobot::open(Region::new(flash.get(usize::from(START)..)?)).ok()
 }

@@ -36,7 +36,7 @@ impl From<Unreadable> for Failure {
 /// Reads the program of an ELF or HEX file.
 ///
 /// # Errors
-/// Fails if it cannot be read, or is not a program of an AVR.
+/// Fails if the file cannot be read, or is not a program of an AVR.
 pub fn read(elf: &Path) -> Result<Image, Unreadable> {
     Image::read(note_input(elf)).map_err(|error| Unreadable {
         elf: elf.to_owned(),
@@ -130,11 +130,11 @@ pub(crate) fn without_contacts(mut image: Image, robot: &Robot) -> Image {
     image
 }
 
-/// The program of an ELF or HEX file with this robot in place of its own; unchanged if it has
-/// none.
+/// The program of an ELF or HEX file with this robot in place of the file's robot. A program
+/// without a robot stays unchanged.
 ///
 /// # Errors
-/// Fails if it cannot be read, or is not a program of an AVR.
+/// Fails if the file cannot be read, or is not a program of an AVR.
 pub fn with_robot(path: &Path, robot: &Robot) -> Result<Image, Unreadable> {
     let mut image = read(path)?;
     if robot_in(&image.flash()).is_some() {
@@ -146,6 +146,7 @@ pub fn with_robot(path: &Path, robot: &Robot) -> Result<Image, Unreadable> {
     Ok(image)
 }
 
+/// Replaces the robot's section of an image.
 fn put_robot(image: &mut Image, robot: &Robot) -> Result<(), LoadError> {
     let start = u32::from(START);
     image.replace(start..start + u32::from(SPACE), &robot.section())

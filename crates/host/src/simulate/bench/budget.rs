@@ -24,12 +24,11 @@ pub struct Row {
     pub what: &'static str,
     /// The unit of the figure.
     pub unit: &'static str,
-    /// The figure, if it could be measured.
+    /// The figure; `None` if it could not be measured.
     pub measured: Option<f64>,
     /// The budget of the figure.
     pub budget: Bound,
-    /// The same figure of Arduino Servo 1.3.0 with four servos at a constant 1500 us, if known; see
-    /// `SERVO_LIBRARY`.
+    /// The figure of the Arduino Servo library, described by `SERVO_LIBRARY`; `None` if it is not known.
     pub servo_library: Option<&'static str>,
     /// True for a figure that depends on the machine that it is measured on.
     pub wall_clock: bool,
@@ -46,18 +45,18 @@ impl Row {
     }
 }
 
-/// Description of the right-hand column.
+/// Description of the column with the figures of the Arduino Servo library.
 pub const SERVO_LIBRARY: &str = "Arduino Servo 1.3.0 (core 1.8.8, ATmega328P at 16 MHz) with four servos at a constant \
      1500 us; its float solve is theta2 and theta3 of head and tail";
 
 /// Cycles from the control tick to the end of its slot, when the interrupts take the next frame.
 const TICK_DEADLINE: f64 = 63_000.0;
-/// The share of these cycles that interrupts leave to main while the line is saturated in both directions.
+/// The share of all cycles that interrupts leave to main while the line is saturated in both directions.
 const MAIN_SHARE: f64 = 0.87;
-/// Cycles of the control tick, mean and worst.
+/// Budgets of the control tick, mean and worst, cycles.
 const TICK: [f64; 2] = [5_000.0, 10_000.0];
-/// The same for a robot whose gaits leave no room for the maps of certified cells, so that the guard measures every
-/// pose.
+/// Budgets of the control tick, mean and worst, cycles, for a robot whose gaits leave no room for the maps of
+/// certified cells, so that the guard measures every pose.
 const TICK_WITHOUT_MAPS: [f64; 2] = [20_000.0, 20_000.0];
 /// Longest time that another interrupt may take without delaying a servo's edge, cycles: the servo interrupts start
 /// 220 cycles early and need 60 of them before they read the timer.

@@ -1,4 +1,4 @@
-//! The measurements of the firmware, each on a board of its own.
+//! The measurements of the firmware, each on its own simulated board.
 
 use std::iter::zip;
 use std::path::Path;
@@ -16,9 +16,9 @@ use crate::simulate::patrol::PATROL;
 use crate::simulate::sim::frame::FRAME;
 use crate::simulate::sim::tour;
 
-/// The costs and the exactness of the firmware. A cycle is 62.5 ns. `None` is a figure that could not be measured:
-/// a robot without a moving gait has no figures of one, and the commanded widths of a firmware from another source
-/// are not known.
+/// The costs and the exactness of the firmware. A cycle is 62.5 ns. A figure that could not be measured is `None`: a
+/// robot without a moving gait has no figures of a gait, and if a firmware was built from another source, the widths
+/// that it commands are not known.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figures {
     /// The gait that was measured: the first that moves.
@@ -31,9 +31,10 @@ pub struct Figures {
     pub has_maps: bool,
     /// Bytes of RAM that are static.
     pub static_ram: u16,
-    /// Smallest number of bytes between the stack and static data at any time.
+    /// Smallest measured number of bytes between the stack and static data.
     pub stack_spare: u16,
-    /// The same for the deepest stack that the code allows, computed instead of measured.
+    /// Number of bytes between static data and the deepest stack that the code allows; computed, not measured.
+    /// Negative if they collide.
     pub stack_margin: i32,
     /// Mean cycles of the control tick without interrupts, in the gait with the largest mean.
     pub tick_mean: Option<f64>,
@@ -41,19 +42,19 @@ pub struct Figures {
     pub tick_worst: u64,
     /// Mean cycles of the control tick in a routine with inputs, without interrupts.
     pub routine_mean: Option<f64>,
-    /// The most cycles of a control tick in that routine, without interrupts.
+    /// The most cycles of a control tick in a routine with inputs, without interrupts.
     pub routine_worst: Option<u64>,
     /// The most cycles from the tick to the end of its computation while the serial line is saturated in both
     /// directions, with interrupts and answers.
     pub tick_latency: u64,
-    /// The most cycles of any other step of main, without interrupts: a line that is written, a byte that ends a
-    /// line, a part of a save or load.
+    /// The most cycles of a step of main other than the control tick, without interrupts: a line that is written, a
+    /// byte that ends a line, a part of a save or load.
     pub step: u64,
     /// Mean cycles of the guard in a tick of the gait.
     pub guard: Option<f64>,
     /// Mean cycles of main in a frame of the gait, with the tick.
     pub main: Option<f64>,
-    /// Cycles that the servo interrupts take in a frame.
+    /// Mean cycles of the servo interrupts in a frame.
     pub servo_interrupts: f64,
     /// The longest time that a serial interrupt delays a servo interrupt, cycles.
     pub serial_interrupt: u64,
@@ -61,15 +62,15 @@ pub struct Figures {
     pub asleep: Option<f64>,
     /// Peak-to-peak difference of measured and commanded widths on an idle line, cycles.
     pub jitter_idle: Option<u64>,
-    /// The same with the line saturated in both directions.
+    /// Peak-to-peak difference of measured and commanded widths on a line saturated in both directions, cycles.
     pub jitter_flooded: Option<u64>,
-    /// Worst deviation of a width from its command in both cases, cycles.
+    /// Worst deviation of a width from its command, on the idle and the saturated line, cycles.
     pub width_error: Option<u64>,
-    /// Worst deviation of a servo's period from 20 ms in both cases, cycles.
+    /// Worst deviation of a servo's period from 20 ms, on the idle and the saturated line, cycles.
     pub period_error: u64,
-    /// Largest number of servo pins high at the same time, in both cases.
+    /// Largest number of servo pins high at the same time, on the idle and the saturated line.
     pub pins_high: u32,
-    /// The step in which widths vary in the gait, cycles.
+    /// The step of which all changes of a width in the gait are multiples, cycles.
     pub resolution: Option<u64>,
     /// Edges that the firmware counts as late.
     pub late: u64,
@@ -83,14 +84,14 @@ pub struct Figures {
 const TICK: &str = "Control::frame";
 /// The guard's function in the ELF.
 const GUARD: &str = "clearance::hazard";
-/// The functions of all other steps of main.
+/// The functions of the steps of main other than the control tick.
 const STEPS: [&str; 3] = [
     "Console::write_line",
     "Console::receive",
     "Control::write_memory",
 ];
-/// Lines that take long: those with answers of several lines, and settings with which the limits of the pulses
-/// restrict a servo's travel.
+/// Lines that take long to execute: those with answers of several lines, and settings with which the limits of the
+/// pulse widths restrict a servo's travel.
 const LONG_LINES: [&str; 20] = [
     "status",
     "help",
@@ -113,19 +114,19 @@ const LONG_LINES: [&str; 20] = [
     "center",
     "factory",
 ];
-/// Data sheet numbers of TIMER1_COMPA and TIMER1_COMPB.
+/// Vector numbers of TIMER1_COMPA and TIMER1_COMPB, counted from 0; the data sheet counts from 1.
 const SERVO_VECTORS: [u8; 2] = [11, 12];
-/// Data sheet numbers of USART_RX and USART_UDRE.
+/// Vector numbers of USART_RX and USART_UDRE, counted from 0; the data sheet counts from 1.
 const SERIAL_VECTORS: [u8; 2] = [18, 19];
-/// Cycles from the end of an instruction to the first one of an interrupt handler: 4 of the interrupt and 3 of the
-/// jump in the vector table.
+/// Cycles from the end of the interrupted instruction to the first instruction of the handler: 4 for the interrupt
+/// response and 3 for the jump in the vector table.
 const ENTRY: u64 = 7;
 /// Ten minutes, ms.
 const LONG_RUN_MS: u64 = 600_000;
 
 impl Figures {
-    /// Measures an ELF with a robot, and with the same robot on patrol if that is given. `progress` receives the
-    /// name of each measurement.
+    /// Measures an ELF with a robot. `patrolling` is the same robot with the routine [`PATROL`], if that is to be
+    /// measured, too. `progress` receives the name of each measurement.
     ///
     /// # Errors
     /// Fails for a firmware that cannot be loaded, stops, or does not answer.
@@ -214,7 +215,7 @@ impl Figures {
     }
 }
 
-/// The most cycles of a step of main that is not a frame, without interrupts.
+/// The most cycles of a step of main other than the control tick, without interrupts.
 ///
 /// # Errors
 /// See [`Figures::measure`].
@@ -236,7 +237,7 @@ fn command(gait: &str) -> String {
     gait.replace('-', " ")
 }
 
-/// A board after some time with one command on an idle line, and the cycles that it spent.
+/// A board that has executed one command for some time on an idle line, and the cycles that it spent meanwhile.
 struct GaitRun {
     board: SimulatedBoard,
     cycles: u64,
@@ -272,8 +273,8 @@ impl GaitRun {
     }
 }
 
-/// Sends commands that move nothing for twenty seconds, at the full rate of the line, while the robot walks and as
-/// many bytes come back. Also returns the number of bytes that the board received before them.
+/// Saturates the line in both directions for twenty seconds while the robot walks. The commands that are sent move
+/// nothing. Also returns the number of bytes that the board had received before them.
 fn flood(mut board: SimulatedBoard, gait: &str) -> Result<(SimulatedBoard, usize), BoardError> {
     let received_before = saturate(&mut board, gait)?;
     board.run_ms(20_000)?;
@@ -285,8 +286,8 @@ fn flood(mut board: SimulatedBoard, gait: &str) -> Result<(SimulatedBoard, usize
     Ok((board, received_before))
 }
 
-/// Starts a gait and saturates the line in both directions. Returns the number of bytes that the board received
-/// before.
+/// Starts a gait and saturates the line in both directions. Returns the number of bytes that the board had received
+/// before the line was saturated.
 fn saturate(board: &mut SimulatedBoard, gait: &str) -> Result<usize, BoardError> {
     board.say("watch 1")?;
     board.say(gait)?;
@@ -373,8 +374,8 @@ fn long_lines(robot: &Robot) -> Vec<String> {
     lines
 }
 
-/// The most cycles of a function while each line is executed during a gait. A line may be refused, which takes as
-/// long.
+/// The most cycles of a function while each line is executed during a gait. Lines that are refused count, too, since
+/// they take as long.
 fn longest_call(
     mut board: SimulatedBoard,
     function: &str,
@@ -428,7 +429,7 @@ fn latency(mut board: SimulatedBoard, gait: &str) -> Result<u64, BoardError> {
     Ok(late.max().unwrap_or(0))
 }
 
-/// The longest serial interrupt on a saturated line, with its entry, cycles.
+/// The longest serial interrupt on a saturated line, including the entry into its handler, cycles.
 fn longest_serial(
     awake: impl Fn() -> Result<SimulatedBoard, BoardError>,
     gait: &str,

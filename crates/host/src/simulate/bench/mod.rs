@@ -57,7 +57,7 @@ impl<'a> Judged<'a> {
 /// Measures the firmware and prints the table.
 ///
 /// # Errors
-/// Fails without a firmware, if it stops or does not answer, or for a broken budget.
+/// Fails if no ELF is given or it cannot be used, if the firmware stops or does not answer, or if a budget is broken.
 pub fn run(args: Args) -> Result<(), Failure> {
     let Some(elf) = args.elf else {
         return Err(Failure::Input(

@@ -61,13 +61,13 @@ pub struct SmallestMargin {
 /// The smallest margins and the strokes over all poses of the run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Safety {
-    /// The smallest margin; `None` without a feasible pose.
+    /// The smallest margin; `None` if no pose is feasible.
     pub least: Option<SmallestMargin>,
     /// Smallest and largest slider travel, mm.
     pub stroke: [f64; 2],
     /// Number of frames whose pose is infeasible or breaks a limit of robot.toml.
     pub violations: usize,
-    /// The reason of the first such frame.
+    /// The reason for the first violation; `None` without violations.
     pub first_violation: Option<String>,
 }
 
@@ -80,12 +80,12 @@ pub struct CommandPath {
     pub from: f64,
     /// End of the command, seconds since power-on.
     pub to: f64,
-    /// Distance forward from the start of the path, mm; `None` if it depends on a tie, two feet
-    /// against two.
+    /// Distance forward from the start of the path, mm; `None` if the contact model does not
+    /// determine it, because two feet balance the two others (a tie).
     pub forward: Option<f64>,
-    /// Distance to the left, mm; `None` if it depends on a tie.
+    /// Distance to the left from the start of the path, mm; `None` if a tie leaves it undetermined.
     pub left: Option<f64>,
-    /// Turn counter-clockwise, deg; `None` if it depends on a tie.
+    /// Turn counter-clockwise, deg; `None` if a tie leaves it undetermined.
     pub turn: Option<f64>,
 }
 
@@ -105,7 +105,7 @@ impl ServoFrame {
     }
 }
 
-/// Reads frames back into angles.
+/// The servo angles of frames, from the widths of their pulses.
 pub fn instants(robot: &Robot, frames: &[Frame]) -> Vec<ServoFrame> {
     let seconds = |frame: &Frame| frame.start as f64 / FREQUENCY as f64;
     frames
@@ -311,7 +311,7 @@ struct Steps<'a> {
 }
 
 impl Steps<'_> {
-    /// The movement from frame number `n` to the next; none while the robot rests.
+    /// The movement from frame number `n` to the next; zero while the robot rests, and for the last frame.
     fn from(&mut self, n: usize) -> Travel {
         /// Largest number of pairs that are kept: a few megabytes.
         const KEPT: usize = 100_000;
@@ -335,7 +335,7 @@ impl Steps<'_> {
     }
 }
 
-/// Joins two paths; the second one is relative to the end of the first.
+/// Joins two movements; the second one is relative to the end of the first.
 fn followed_by(first: Travel, second: Travel) -> Travel {
     let (sin, cos) = first.turn.to_radians().sin_cos();
     Travel {

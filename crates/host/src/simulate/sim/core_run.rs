@@ -5,9 +5,10 @@
 //! compared with them: any difference is a fault of the compiler, of the board's code or of the
 //! pulses.
 //!
-//! The time at which main takes a byte has to be reconstructed: not before the byte is complete at the UNO, and not
-//! while the serial line has no room for the longest answer. That follows from the length of the text written so
-//! far. Main also waits while it writes the EEPROM; these waits are not reconstructed, and take no time here.
+//! The time at which main takes a byte has to be reconstructed. Main takes it not before the byte is complete at the
+//! UNO, and not while the serial line has no room for the longest answer, which follows from the length of the text
+//! written so far. Main also waits while it writes the EEPROM; these waits are not reconstructed, and take no time
+//! here.
 
 use lizard_core::console::LONGEST_LINE;
 use lizard_core::numbers::robot::Robot;
@@ -84,13 +85,13 @@ pub struct Commands {
 }
 
 /// Runs the core of a robot on a recording: `received` are the bytes that reached the UNO, `first` is the cycle of
-/// A1's first pulse, `count` the number of frames from there on. The result is exact except for the lines of
+/// A1's first pulse, `count` the number of frames from that pulse on. The result is exact except for the lines of
 /// [`undecided`].
 pub fn play(robot: Robot<'static>, received: &[SerialByte], first: u64, count: usize) -> Commands {
     play_with_contacts(robot, received, &[], first, count)
 }
 
-/// Like [`play`], with contacts that close and open.
+/// Runs the core of a robot like [`play`], but with contacts that close and open.
 pub fn play_with_contacts(
     robot: Robot<'static>,
     received: &[SerialByte],

@@ -8,8 +8,8 @@ use crate::shared::plain::plain;
 /// Number of lines of a run of `# t=` lines that are printed; the others are only counted.
 const SHOWN: usize = 3;
 
-/// Prints lines. Of a run of `# t=` lines, which `watch` causes, it prints only the first three and the number of
-/// the others, unless it is to print all.
+/// Prints the lines of a dialogue. Of a run of `# t=` lines, which `watch` causes, it prints only the first three and
+/// the number of the others, unless it is to print all.
 #[derive(Debug)]
 pub struct Printer {
     shows_all: bool,

@@ -5,8 +5,8 @@ use simulated_uno::FREQUENCY;
 use super::analysis::ServoFrame;
 use super::frame::FRAME;
 
-/// Rate of a leg, deg/s, below which its foot counts as still. A motion with a cubic or smoothstep end passes this
-/// rate within a frame.
+/// Rate of a leg, deg/s, below which its foot counts as still. A motion that starts or ends as a cubic or smoothstep
+/// function passes this rate within a frame.
 const MAX_STILL_RATE: f64 = 4.0;
 
 /// The movement of a foot from one frame to the next.
@@ -25,9 +25,9 @@ pub enum Phase {
 pub struct FootSpan {
     /// The movement of the foot.
     pub phase: Phase,
-    /// The beginning, s.
+    /// The start of the time span, s.
     pub from: f64,
-    /// The end, s.
+    /// The end of the time span, s.
     pub to: f64,
 }
 
@@ -83,6 +83,7 @@ mod tests {
             .collect()
     }
 
+    /// The movement of a servo's foot at a time of [`instants`]; `None` while the robot rests.
     fn at(gait: &str, servo: usize, seconds: f64) -> Option<Phase> {
         let spans = foot_spans(instants(gait).into_iter(), servo);
         let here = spans

@@ -22,7 +22,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// The four widths, if all four servos have a pulse.
+    /// The four widths; `None` unless all four servos have a pulse.
     pub fn all(&self) -> Option<[u64; 4]> {
         let [a1, a2, a3, a4] = self.widths;
         Some([a1?, a2?, a3?, a4?])
@@ -31,7 +31,7 @@ impl Frame {
     /// The four widths in cycles.
     ///
     /// # Panics
-    /// If a servo has no pulse in this frame.
+    /// Panics if a servo has no pulse in this frame.
     pub fn widths(&self) -> [u64; 4] {
         self.all()
             .unwrap_or_else(|| panic!("a servo has no pulse: {self:?}"))
@@ -69,7 +69,7 @@ pub fn latest_start(edges: &[Edge], pins: [Pin; 4]) -> Option<u64> {
         .map(|edge| edge.cycle)
 }
 
-/// The `count` frames from cycle `start` on.
+/// Groups the pulses of these edges into the `count` frames from cycle `start` on.
 pub fn frames(edges: &[Edge], pins: [Pin; 4], start: u64, count: u64) -> Vec<Frame> {
     let empty = |n| Frame {
         start: start + n * FRAME,

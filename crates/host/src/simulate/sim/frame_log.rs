@@ -24,7 +24,7 @@ impl FrameLog {
         (self.first + n as u64 * FRAME) as f64 / FREQUENCY as f64
     }
 
-    /// Number of the first frame that starts at a time or later.
+    /// Number of the first frame that starts at a time or later; the number of all frames if none does.
     pub fn index(&self, seconds: f64) -> usize {
         let since = seconds * FREQUENCY as f64 - self.first as f64;
         let n = (since / FRAME as f64).ceil().max(0.0) as usize;
@@ -37,9 +37,11 @@ impl FrameLog {
 pub struct FrameReader {
     pins: [Pin; 4],
     log: FrameLog,
+    /// Cycle at which each servo's pin rose; `None` while the pin is low.
     rise: [Option<u64>; 4],
     /// Each servo's latest pulse: number of its frame, cycle of its start.
     latest: [Option<(usize, u64)>; 4],
+    /// True after A1's first pulse has started.
     has_started: bool,
 }
 
@@ -80,6 +82,7 @@ impl FrameReader {
         }
     }
 
+    /// Adds a pulse to the log. Ignores a pulse before A1's first one.
     fn record_pulse(&mut self, servo: usize, start: u64, width: u64) {
         let Some(since) = start.checked_sub(first_cycle(self.log.first)) else {
             return;
@@ -123,6 +126,7 @@ mod tests {
         [(start, true), (start + width, false)].map(|(cycle, high)| Edge { cycle, pin, high })
     }
 
+    /// Reads the edges in two parts, split at index `cut`.
     fn read(edges: &[Edge], cut: usize, cycle: u64) -> FrameLog {
         let mut reader = FrameReader::new(PINS, 0);
         reader.read(edges[..cut].to_vec());

@@ -125,7 +125,8 @@ fn seconds(text: &str) -> Result<f64, String> {
 /// Runs the firmware and prints the results.
 ///
 /// # Errors
-/// Fails without a firmware, for a wrong script, a firmware that crashes, or a file that cannot be written.
+/// Fails for a wrong robot.toml, a firmware that is missing or has another robot, an unknown gait or input, a wrong
+/// script, a firmware that crashes, or a file that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let fidelity = match args.fidelity {
         FidelityArg::DataSheet => Fidelity::DataSheet,
@@ -232,8 +233,8 @@ fn record(
     Ok(recording)
 }
 
-/// The widths that the firmware's core asks for, if the firmware's banner says
-/// that it was built from the same core and tables as this program.
+/// The widths that the firmware's core asks for; `None` if the firmware's banner does not
+/// say that it was built from the same core and tables as this program.
 fn commands(robot: &Robot, recording: &Recording, contacts: &[Change]) -> Option<Vec<[u16; 4]>> {
     let log = &recording.frames;
     let commands = core_run::play_with_contacts(
@@ -252,7 +253,7 @@ fn end_message(state: &State) -> String {
         State::Alive => "the firmware is alive".to_owned(),
         State::Halted => "the firmware sleeps with interrupts off, forever".to_owned(),
         State::Crashed { pc, message } => {
-            // simavr's own word for it, if it gives no other message.
+            // The message of simavr if it knows no reason.
             let reason = match message.as_str() {
                 "avr_sadly_crashed" => "no such instruction or address",
                 words => words,
@@ -263,6 +264,7 @@ fn end_message(state: &State) -> String {
     }
 }
 
+/// The script that the options ask for.
 fn script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
     let given_ms = args.duration.map(|seconds| (seconds * 1000.0) as u64);
     if let Some(path) = &args.script {

@@ -14,8 +14,9 @@ const DEFAULT_PRESS_MS: u64 = 200;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Press {
     input: String,
-    /// The start; both times in ms since power-on.
+    /// Time at which the contact closes, ms since power-on.
     from: u64,
+    /// Time at which the contact opens, ms since power-on.
     to: u64,
 }
 
@@ -26,7 +27,7 @@ pub struct Change {
     pub ms: u64,
     /// Arduino number of the contact's pin.
     pub pin: u8,
-    /// True if it closes.
+    /// True if the contact closes, false if it opens.
     pub is_closed: bool,
 }
 
@@ -59,7 +60,7 @@ impl FromStr for Press {
 /// The changes of a robot's contacts, in order of time.
 ///
 /// # Errors
-/// Fails if the robot does not have an input of that name.
+/// Fails if the robot does not have the input of a press.
 pub fn changes(presses: &[Press], robot: &Robot) -> Result<Vec<Change>, Failure> {
     let mut all = Vec::new();
     for press in presses {

@@ -31,32 +31,32 @@ pub enum ScriptError {
     /// There is nothing after the time.
     #[error("line {0}: no command follows the time")]
     Silent(usize),
-    /// The line's time is before that of the line above.
+    /// The line's time is before that of the previous command.
     #[error("line {line}: {now} ms comes before the {before} ms of the command above")]
     Backwards {
         /// The number of the line.
         line: usize,
         /// The time of this line.
         now: u64,
-        /// The time of the line before.
+        /// The time of the previous command.
         before: u64,
     },
 }
 
-/// Time for which the robot stands before the first command of the built-in scripts.
+/// Time for which the robot stands before the first command of the built-in scripts, ms.
 const STAND_MS: u64 = 1000;
-/// Time for stop, status and rest at the end.
+/// Time for stop, status and rest at the end of the built-in scripts, ms.
 const CLOSE_MS: u64 = 2000;
 
 impl Script {
-    /// The shortest of the built-in scripts, ms.
+    /// Shortest length that a built-in script may have, ms.
     pub const SHORTEST_MS: u64 = STAND_MS + CLOSE_MS + 1000;
 
     /// A script of `ms` milliseconds, at least [`Self::SHORTEST_MS`]: boot, the
     /// gaits one after the other, stop, status, rest.
     pub fn of_gaits(gaits: &[&str], ms: u64) -> Self {
         let time = ms - STAND_MS - CLOSE_MS;
-        // The last gait gets four parts of the time, each one before it five.
+        // The last gait gets four parts of the time, each earlier gait five.
         let start = |n: usize| STAND_MS + time * 5 * n as u64 / (4 + 5 * (gaits.len() as u64 - 1));
         let command = |gait: &str| gait.replace('-', " ");
         let mut steps: Vec<Step> = gaits

@@ -48,7 +48,7 @@ pub(super) fn until_interrupted(
     };
     let name = match link {
         Some(link) => {
-            // Before the link is made, so that a signal between the two does not leave it behind.
+            // Called before the link is made, so that a signal between the two calls does not leave the link behind.
             remove_at_end(link.to_owned(), port.path().to_owned())?;
             make_link(link, port.path())?;
             link.to_owned()
@@ -81,8 +81,8 @@ pub(super) fn until_interrupted(
     }
 }
 
-/// The message when the chip stops. A new board has nothing in flash at the firmware's address, so it stops as soon
-/// as the boot loader starts the program.
+/// The message about a new state of the chip. A new board has nothing in flash at the firmware's address, so it stops
+/// as soon as the boot loader starts the program.
 fn end_message(state: &State, flash: &[u8], port: &Path) -> String {
     match state {
         State::Crashed { .. } if flash.starts_with(&[0xff, 0xff]) => format!(
@@ -93,15 +93,15 @@ fn end_message(state: &State, flash: &[u8], port: &Path) -> String {
     }
 }
 
-/// Removes the link when a signal, such as that of Ctrl-C, ends the program, unless the link leads elsewhere by
-/// then. Then lets the signal have its default effect.
+/// Removes the link when a signal, such as that of Ctrl-C, ends the program, unless the link points to another file
+/// by then. Then lets the signal have its default effect.
 fn remove_at_end(link: PathBuf, port: PathBuf) -> Result<(), Failure> {
     let mut signals = Signals::new([SIGINT, SIGTERM, SIGHUP])
         .map_err(|error| Failure::Impossible(format!("Ctrl-C cannot be waited for: {error}")))?;
     thread::spawn(move || {
         for signal in &mut signals {
             if fs::read_link(&link).is_ok_and(|end| end == port) {
-                // If this fails, the link leads nowhere, and the next run replaces it.
+                // If this fails, a dead link to a pseudo terminal remains, and the next run replaces it.
                 let _ = fs::remove_file(&link);
             }
             let _ = signal_hook::low_level::emulate_default_handler(signal);

@@ -10,7 +10,7 @@ use super::frame_log::{FrameLog, FrameReader};
 use super::lines::LineReader;
 use super::script::Script;
 
-/// The end of the serial line that sent a line of text.
+/// The sender of a line of text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Sender {
@@ -23,8 +23,8 @@ pub enum Sender {
 /// A line of the dialogue.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct DialogueLine {
-    /// Milliseconds since power-on: for the robot at the line's end, for the
-    /// user at its start.
+    /// Milliseconds from power-on to the end of a line from the robot, or to the
+    /// start of a line from the user.
     pub ms: f64,
     /// The sender of the line.
     pub from: Sender,
@@ -44,13 +44,13 @@ pub enum Event<'a> {
 /// The result of a run.
 #[derive(Debug)]
 pub struct Recording {
-    /// The firmware's first line.
+    /// The firmware's first line; `None` if it has sent none.
     pub banner: Option<String>,
-    /// The answer to each command of the script, if it came before the end.
+    /// The answer to each command of the script; `None` if it did not come before the end.
     pub answers: Vec<Option<String>>,
     /// Every pulse of the servos.
     pub frames: FrameLog,
-    /// The bytes of the commands, complete at the UNO.
+    /// The bytes of the commands that the UNO has received completely.
     pub received_by_uno: Vec<SerialByte>,
     /// The number of simulated cycles.
     pub cycles: u64,
@@ -125,6 +125,7 @@ struct Dialogue<F> {
 }
 
 impl<F: FnMut(Event<'_>) -> io::Result<()>> Dialogue<F> {
+    /// Sends a command to the UNO and reports it.
     fn send(&mut self, uno: &mut Uno, command: &str) -> io::Result<()> {
         uno.send(command.as_bytes());
         uno.send(b"\n");
@@ -135,6 +136,7 @@ impl<F: FnMut(Event<'_>) -> io::Result<()>> Dialogue<F> {
         }))
     }
 
+    /// Reads what the UNO has sent, and reports its lines.
     fn receive(&mut self, uno: &mut Uno) -> io::Result<()> {
         for line in self.reader.read(&uno.take_transmitted()) {
             if line.is_answer() {

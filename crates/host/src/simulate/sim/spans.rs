@@ -9,9 +9,9 @@ use super::script::Script;
 pub struct Span {
     /// The command in effect.
     pub command: String,
-    /// Time since power-on at which it was sent, s.
+    /// Time since power-on at which the command was sent, s.
     pub from: f64,
-    /// Time since power-on at which the next one was sent or the run ended, s.
+    /// Time since power-on at which the next command was sent or the run ended, s.
     pub to: f64,
 }
 

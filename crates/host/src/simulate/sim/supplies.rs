@@ -14,8 +14,8 @@ const BOARD_MV: f64 = 5_000.0;
 /// ADC counts at full scale.
 const FULL_SCALE: f64 = 1_024.0;
 
-/// The analogue pin that measures the servos' rail, and the voltage there, mV. `None` if no
-/// pin measures the rail.
+/// The analogue pin that measures the servos' rail, and the voltage at that pin, mV. `None` if
+/// no pin measures the rail.
 pub fn rail_pin(robot: &Robot) -> Option<(Pin, u16)> {
     let mv = healthy_rail_mv(&robot.firmware().supplies())?;
     Some((Pin::arduino(robot.firmware().rail_pin()?), mv as u16))
@@ -32,7 +32,7 @@ pub fn connect(uno: &mut Uno, robot: &Robot) {
     }
 }
 
-/// The converter's readings of the supplies.
+/// The analogue-to-digital converter's readings of healthy supplies.
 pub(super) fn reading(supplies: &Supplies) -> Reading {
     let counts = |mv: f64| (FULL_SCALE * mv / BOARD_MV) as u16;
     Reading {

@@ -12,17 +12,29 @@ use crate::shared::ink::{
     text_middle, text_start, title,
 };
 
+/// Width of the picture, px.
 const WIDTH: f64 = 1280.0;
+/// Width of the left margin, px.
 const LEFT: f64 = 200.0;
+/// Width of the right margin, px.
 const RIGHT: f64 = 36.0;
+/// Upper edge of the band with the commands, px.
 const COMMANDS: f64 = 88.0;
+/// Upper edge of the first servo's strip, px.
 const STRIPS: f64 = 132.0;
+/// Height of a servo's strip, px.
 const STRIP: f64 = 104.0;
+/// Distance between two strips, px.
 const STRIP_GAP: f64 = 14.0;
+/// Upper edge of the first row of footfalls, px.
 const FEET: f64 = STRIPS + 4.0 * (STRIP + STRIP_GAP) + 34.0;
+/// Height of a row of footfalls, px.
 const FOOT: f64 = 28.0;
+/// Distance between two rows of footfalls, px.
 const FOOT_GAP: f64 = 8.0;
+/// Vertical position of the time axis, px.
 const AXIS: f64 = FEET + 4.0 * (FOOT + FOOT_GAP) + 4.0;
+/// Height of the picture, px.
 const HEIGHT: f64 = AXIS + 96.0;
 
 /// The title and description of the picture.
@@ -64,19 +76,22 @@ pub fn draw(run: Run<'_>, spans: &[Span], caption: &Caption) -> String {
     page((WIDTH, HEIGHT), group)
 }
 
+/// The contents of a picture.
 struct Chart<'a> {
     run: Run<'a>,
     spans: &'a [Span],
     caption: &'a Caption,
+    /// Length of the time axis, s.
     seconds: f64,
 }
 
 impl Chart<'_> {
+    /// Horizontal position of a time, px.
     fn x(&self, seconds: f64) -> f64 {
         LEFT + (WIDTH - LEFT - RIGHT) * seconds / self.seconds
     }
 
-    /// The band with the command in effect.
+    /// Adds the band with the commands in effect.
     fn draw_commands(&self, mut group: Group) -> Group {
         for (n, Span { from, to, command }) in self.spans.iter().enumerate() {
             let (x, end) = (self.x(*from), self.x(*to));
@@ -97,7 +112,7 @@ impl Chart<'_> {
         ))
     }
 
-    /// A vertical line across the complete picture at each change of command.
+    /// Adds a vertical line across the complete picture at each change of command.
     fn draw_marks(&self, mut group: Group) -> Group {
         for span in self.spans.iter().skip(1) {
             let x = self.x(span.from);
@@ -119,6 +134,7 @@ impl Chart<'_> {
             + 5.0
     }
 
+    /// Adds the strip with a servo's angle over time.
     fn draw_strip(&self, mut group: Group, servo: usize, reach: f64) -> Group {
         let top = STRIPS + servo as f64 * (STRIP + STRIP_GAP);
         let neutral = self.run.robot.servos()[servo].neutral;
@@ -170,7 +186,8 @@ impl Chart<'_> {
     }
 
     /// A servo's angle as points (seconds, degrees), one curve for each time span with
-    /// pulses. If a pixel column has many frames, only its lowest and highest are kept.
+    /// pulses. If the pixel columns have many frames each, only the lowest and the highest
+    /// angle of a column are kept.
     fn runs(&self, servo: usize) -> Vec<Vec<(f64, f64)>> {
         let dense = self.run.log.widths.len() as f64 > 4.0 * (WIDTH - LEFT - RIGHT);
         let mut runs = vec![Curve::default()];
@@ -190,6 +207,7 @@ impl Chart<'_> {
             .collect()
     }
 
+    /// Adds the row with the footfalls of a servo's foot.
     fn draw_feet(&self, mut group: Group, servo: usize) -> Group {
         let top = FEET + servo as f64 * (FOOT + FOOT_GAP);
         let (start, end) = (self.x(0.0), self.x(self.seconds));
@@ -285,6 +303,7 @@ fn foot(
         Phase::Stance => rectangle(at, size, colour),
         Phase::Still => rectangle(at, size, colour).set("fill-opacity", 0.22),
         Phase::Swing => {
+            // The stroke stays inside the area of the time span.
             let inner = (
                 (at.0 + 0.7, at.1 + 0.7),
                 ((size.0 - 1.4).max(0.2), size.1 - 1.4),
@@ -300,12 +319,13 @@ fn foot(
 #[derive(Default)]
 struct Curve {
     points: Vec<(f64, f64)>,
+    /// Pixel column of the last point.
     column: Option<i64>,
 }
 
 impl Curve {
     /// Adds a point. Of the points in the same column of pixels, only the lowest and
-    /// the highest are kept; without a column, all are.
+    /// the highest are kept. If `column` is `None`, all points are kept.
     fn add(&mut self, column: Option<i64>, point: (f64, f64)) {
         if column.is_none() {
             self.points.push(point);

@@ -8,8 +8,8 @@ pub fn moving(robot: &Robot) -> Vec<&str> {
     moving.map(|gait| gait.name()).collect()
 }
 
-/// The gaits of a demonstration: the first that moves, and of the others the one that is predicted to turn the
-/// robot most in a cycle. Fewer if the robot has fewer moving gaits.
+/// The gaits of a demonstration: the first moving gait, then the other one that is predicted to turn the robot
+/// most in a cycle. Fewer if the robot has fewer moving gaits.
 pub fn demonstration_gaits(robot: &Robot) -> Vec<&str> {
     let moving = moving(robot);
     let turn = |name: &str| {
@@ -17,7 +17,7 @@ pub fn demonstration_gaits(robot: &Robot) -> Vec<&str> {
         found.map_or(0.0, |gait| robot.predict(gait).turn.map_or(0.0, f64::abs))
     };
     let others = moving.iter().copied().skip(1);
-    // Of several equal ones the first, because mirrored gaits turn equally far.
+    // Mirrored gaits turn equally far; the tolerance keeps the first of them.
     let max = others.fold(None, |best: Option<&str>, name| match best {
         Some(best) if turn(name) <= turn(best) + 1e-6 => Some(best),
         _ => Some(name),

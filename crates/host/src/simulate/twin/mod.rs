@@ -150,7 +150,7 @@ fn script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
     })
 }
 
-/// A script for one round of a routine, after a second of standing and with a second after its end.
+/// Builds a script for one round of a routine, with a second of standing before it and a second after its end.
 fn round_script(robot: &Robot, routine: &Routine) -> Script {
     const STAND_MS: u64 = 1000;
     let round = Round::of(robot, routine);
@@ -170,7 +170,7 @@ fn round_script(robot: &Robot, routine: &Routine) -> Script {
     }
 }
 
-/// The gait of this name, if it moves a servo.
+/// The gait of this name. Fails if the robot has no such gait or if the gait moves no servo.
 pub(crate) fn moving_gait<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failure> {
     match robot.gait(name) {
         Some(gait) if gait.moves() => Ok(gait),
@@ -186,8 +186,8 @@ pub(crate) fn moving_gait<'a>(robot: &'a Robot, name: &str) -> Result<&'a Checke
     }
 }
 
-/// A script that walks each of these gaits for three cycles, after a second in which the robot takes its first
-/// pose.
+/// Builds a script that walks each of these gaits for three cycles. The robot first has a second to take its
+/// first pose.
 pub(crate) fn walk_script(robot: &Robot, gaits: &[&str]) -> Script {
     const CYCLES: f64 = 3.0;
     const STAND_MS: u64 = 1000;

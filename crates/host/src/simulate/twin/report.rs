@@ -21,17 +21,18 @@ pub struct Report {
 pub struct Row {
     /// The command as it was sent.
     pub command: String,
-    /// Times of the command's first frame and of its end, s since power-on.
+    /// Times of the command's first frame and of the first frame after the command, s since
+    /// power-on.
     pub seconds: [f64; 2],
     /// Displacement of the body over the whole command.
     pub way: PathParts,
     /// The gait's last complete cycle, and its prediction.
     pub cycle: Option<Cycle>,
     /// Displacement that `lizard gaits` predicts for one round of a routine with these servos; null
-    /// for a routine with inputs, for other commands, and at another pace.
+    /// for a routine with inputs, for other commands, and if the script changes the speed.
     pub round: Option<PathParts>,
-    /// Distance that each foot slid over the floor, mm, servo order. This and the figures below are
-    /// those of the cycle in `cycle`, or of all frames of the command if that is null.
+    /// Distance that each foot slid over the floor, mm, servo order. This field and all that follow
+    /// cover the cycle in `cycle`, or all frames of the command if `cycle` is null.
     pub foot_slip: [f64; 4],
     /// The largest lag of a leg behind its servo, deg.
     pub lag: f64,
@@ -45,7 +46,8 @@ pub struct Row {
     pub servo_error: f64,
 }
 
-/// A displacement; a part is null if the model cannot decide it because two feet pull against two.
+/// A displacement; a part is null if the contact model cannot determine it, because two feet pull
+/// against the other two.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct PathParts {
     /// Distance forward, mm.
@@ -59,14 +61,14 @@ pub struct PathParts {
 /// One cycle of a gait.
 #[derive(Debug, Serialize)]
 pub struct Cycle {
-    /// The displacement by the cycle.
+    /// Displacement of the body in the cycle.
     pub way: PathParts,
     /// The displacement that the contact model predicts for ideal servos.
     pub predicted: PathParts,
     /// Mean speed over the cycle, mm/s; null if the displacement is undecided.
     pub speed: Option<f64>,
-    /// Predicted movement as a share of that with rigid legs; null if the legs are rigid, or if
-    /// rigid legs hardly move or are undecided.
+    /// Predicted displacement divided by that of a robot with rigid legs; null if the legs are
+    /// rigid, or if with rigid legs the displacement is almost zero or undecided.
     pub share_of_rigid: Option<f64>,
 }
 
@@ -80,7 +82,8 @@ impl From<Prediction> for PathParts {
     }
 }
 
-/// Predicts the round of a routine by these servos, if the command runs one round.
+/// Predicts one round of a routine with this kind of servos; `None` unless the command runs exactly
+/// one round.
 fn predict_round(robot: &Robot, command: &str, model: ServoModel) -> Option<(Round, Prediction)> {
     let routine = robot.routine(command.strip_suffix(" 1")?)?;
     let round = Round::of(robot, routine);
@@ -106,8 +109,8 @@ impl PathParts {
 }
 
 impl Report {
-    /// Sums up a replay. `is_paced` is true if gaits went at other speeds than their own; cycles
-    /// and predicted rounds are then left out.
+    /// Summarises a replay, one row for each command. `is_paced` is true if the script changes the
+    /// speed of the gaits; cycles and predicted rounds are then left out.
     pub fn of(robot: &Robot, replay: &Replay, model: ServoModel, is_paced: bool) -> Self {
         let rows = replay
             .stages
@@ -139,7 +142,7 @@ impl Report {
                     }),
                     share_of_rigid: SpringCost::of(gait, robot.ground()).and_then(|on| on.share),
                 }),
-                // A contact may end a step earlier or later than the prediction assumes.
+                // An input's contact may end a step earlier or later than the prediction assumes.
                 round: round
                     .filter(|(round, _)| !round.has_inputs)
                     .map(|(_, way)| way.into()),
@@ -253,13 +256,13 @@ impl Report {
     }
 }
 
-/// Describes a displacement in words.
+/// Describes a displacement as text for the user.
 fn sentence(way: &PathParts) -> String {
     let [forward, left, turn] = [way.forward, way.left, way.turn].map(|part| format_part(part, 1));
     format!("ahead {forward} mm, left {left} mm, turn {turn} deg")
 }
 
-/// Formats a part of a displacement with its sign, never `-0`; a dash if it is unknown.
+/// Formats a part of a displacement with its sign, never as `-0`; an unknown part becomes a dash.
 pub fn format_part(part: Option<f64>, decimals: usize) -> String {
     part.map_or("-".to_owned(), |value| {
         format!("{:+.decimals$}", tidy(value, decimals as i32))

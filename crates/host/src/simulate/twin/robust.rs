@@ -13,18 +13,18 @@ use crate::Failure;
 use crate::shared::json;
 use crate::shared::progress::bar;
 
-/// The spread of a gait's paths.
+/// The spread of a gait's displacement in one cycle.
 #[derive(Debug, Serialize)]
 struct Spread {
     gait: String,
     times: usize,
     /// The 5th, 50th and 95th percentile of the distance forward, mm.
     forward: [f64; 3],
-    /// Distance to the left, mm.
+    /// The same percentiles of the distance to the left, mm.
     left: [f64; 3],
-    /// Turn, deg counter-clockwise.
+    /// The same percentiles of the turn, deg counter-clockwise.
     turn: [f64; 3],
-    /// The servos' effort at each pace on each supply.
+    /// The servos' load at each pace on each supply.
     lines: Vec<Line>,
 }
 
@@ -35,12 +35,12 @@ struct Line {
     pace: f64,
     /// Supply of the servos, V.
     volts: f64,
-    /// The share on the robot's own floor, and with the most friction of the variations.
+    /// The share on the robot's own floor, then on a floor with the highest friction of the variations.
     share: [f64; 2],
 }
 
 impl Line {
-    /// The lines of a gait: all supplies at its own pace, then at half of it.
+    /// The shares of a gait on every supply, at each of the paces `PACES`.
     fn all(robot: &Robot, gait: &CheckedGait) -> Vec<Self> {
         let efforts = [1.0, FRICTION.1].map(|more| {
             let ground = Ground {
@@ -176,7 +176,7 @@ fn print(spreads: &[Spread], times: u32, out: &mut impl Write) -> io::Result<()>
     Ok(())
 }
 
-/// A share of the torque-speed line, with a mark if little is left.
+/// Formats a share of the torque-speed line, with a mark if little torque is left.
 fn mark(share: f64) -> String {
     let mark = if share >= HIGH_LINE_SHARE { '!' } else { ' ' };
     format!("{share:.2}{mark}")

@@ -47,8 +47,9 @@ fn a_crank_is_drawn_and_named_at_its_neutral_angle() {
     }
 }
 
-/// The direction of a line of at least 50 pixels, degrees counter-clockwise from the
-/// right; its ends are rounded to hundredths.
+/// The direction of a line, degrees counter-clockwise from the right. Its end points are
+/// rounded to hundredths of a pixel, so the line must be at least 50 pixels long for an
+/// accurate angle.
 fn direction(line: &[Point]) -> f64 {
     let (x, y) = (line[1].0 - line[0].0, line[0].1 - line[1].1);
     assert!(x.hypot(y) > 50.0);

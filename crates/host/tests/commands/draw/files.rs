@@ -23,8 +23,8 @@ pub fn files() -> Vec<(String, String)> {
     files
 }
 
-/// The value of a servo's key in a robot file, read as text: the first line with this key after
-/// the servo's table begins.
+/// The value of a key in the table of a servo, read as text: the first line with this key after
+/// the table's header.
 pub fn value_of<'a>(text: &'a str, servo: &str, key: &str) -> &'a str {
     let (_, table) = text
         .split_once(&format!("[servo.{servo}]"))

@@ -28,7 +28,7 @@ fn everything_is_on_the_page_and_large_enough_to_be_read() {
                 if element.tag == "text" {
                     let size = element.number("font-size");
                     assert!(size >= 12.0, "{name}: {element:?}");
-                    // A wide font has 0.55 of its size per character.
+                    // A character of a wide font is about 0.55 of the font size wide.
                     let long = 0.55 * size * element.words.chars().count() as f64;
                     let (x, y) = points[0];
                     if element.text("transform").is_empty() {

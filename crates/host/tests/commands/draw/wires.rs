@@ -8,7 +8,7 @@ use lizard_robot::Robot;
 use super::drawing::{Drawing, Point};
 use super::files::{SERVOS, files, paper, value_of};
 
-/// The paper's robot with other pins.
+/// The text of the paper's robot with other pins.
 fn with_pins(pins: [&str; 4]) -> String {
     let mut text = paper();
     for (servo, pin) in SERVOS.into_iter().zip(pins) {
@@ -22,7 +22,7 @@ fn with_pins(pins: [&str; 4]) -> String {
     text
 }
 
-/// Pins in many orders. 17 is prime, so four pins at equal steps are always distinct.
+/// Sets of four pins, in many orders. 17 is prime, so four pins at equal steps are always distinct.
 fn many_pins() -> Vec<[String; 4]> {
     let name = |n: usize| {
         let n = n % 17;
@@ -50,7 +50,7 @@ struct Nets<'a> {
 
 impl<'a> Nets<'a> {
     /// Joins the ends of wires, links and terminal positions. Components (fuse, switch, resistors) do not join
-    /// their ends.
+    /// their ends, and the optional wires of the radio and the inputs are left out.
     fn of(drawing: &'a Drawing) -> Self {
         let mut nets = Self {
             drawing,
@@ -75,6 +75,7 @@ impl<'a> Nets<'a> {
                 nets.join(&one, &other);
             }
         }
+        // The single terminal between the switch and the converter.
         nets.join("end-way-1", "end-way-2");
         nets
     }
@@ -196,7 +197,7 @@ fn every_component_is_joined_to_what_it_needs_and_to_nothing_else() {
         apart.sort();
         apart.dedup();
         assert_eq!(apart.len(), count, "{name}: two nets are one");
-        // Spare positions are joined to nothing.
+        // Spare positions are not joined to ground.
         for position in ["end-ground-11-wire", "end-ground-12-wire"] {
             assert_ne!(nets.root(position), nets.root("pin-GND"));
         }
@@ -232,7 +233,7 @@ fn wires_only_cross_they_never_run_into_or_along_each_other() {
         .map(|pins| with_pins([0, 1, 2, 3].map(|servo| pins[servo].as_str())));
     for text in files().into_iter().map(|file| file.1).chain(many) {
         let drawing = Drawing::of(&wiring(&Robot::parse(&text).expect("a robot")));
-        // The radio's panel has joints of its own.
+        // The wires in the radio's panel may touch each other, so they are left out.
         let mut wires = drawing.wires();
         wires.retain(|(name, _)| !name.starts_with("radio-"));
         let upright = |part: &[Point]| part[0].0 == part[1].0;
@@ -256,7 +257,7 @@ fn wires_only_cross_they_never_run_into_or_along_each_other() {
                     };
                     let (x, y) = (apart(|at| at.0), apart(|at| at.1));
                     if upright(one) == upright(two) {
-                        // Parallel wires keep apart, unless they share a hole or a screw.
+                        // Parallel wires keep their distance, unless they share an end or are both links.
                         let shared = a.starts_with("link-") && b.starts_with("link-");
                         let near = x < 3.0 && y < 3.0;
                         assert!(
@@ -264,7 +265,7 @@ fn wires_only_cross_they_never_run_into_or_along_each_other() {
                             "{a} along {b}: {one:?} {two:?}"
                         );
                     } else if x <= 0.0 && y <= 0.0 {
-                        // Wires that cross do so well away from the ends of both.
+                        // Wires that cross do so well away from the ends of both, unless they share an end.
                         let depth = (-x).min(-y);
                         let touch = one.iter().any(|end| two.contains(end));
                         assert!(depth > 2.0 || touch, "{a} runs into {b}: {one:?} {two:?}");

@@ -30,13 +30,14 @@ fn write(folder: &Path, seconds: f64, picture: &Picture) {
         .expect("it is written");
 }
 
-/// Writes jig.toml: the paper's robot, with pulses that turn faster than a servo can follow.
+/// Writes jig.toml: the paper's robot with pulses that move faster than its servos can follow.
 fn jig(folder: &Path) {
     let text = read("robots/paper.toml").replace("slew = 300.0", "slew = 1000.0");
     fs::write(folder.join("jig.toml"), text).expect("a file");
 }
 
-/// Checks that a figure is within two errors of its true value, and that the error is below `largest`.
+/// Checks that a figure is within two standard errors of its true value, and that the standard error
+/// is below `largest`.
 fn check(object: &Value, key: &str, truth: f64, largest: f64) {
     let figures = object["figures"].as_array().expect("figures");
     let figure = figures.iter().find(|figure| figure["key"] == key);
@@ -62,7 +63,7 @@ fn a_film_of_a_horn_gives_the_lines_of_a_servo_that_turns_the_other_way() {
     };
     let mut studio = super::studio();
     (studio.deck, studio.shutter) = (40.0, 1.0 / 250.0);
-    // The poses of A1 go clockwise: outward the leg would come too near to its singularity.
+    // The poses of A1 go clockwise; counter-clockwise the leg would come too near to its singularity.
     servo.pictures(
         &studio,
         -1.0,

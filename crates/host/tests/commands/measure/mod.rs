@@ -5,7 +5,7 @@
 mod board;
 mod jig;
 mod keys;
-// The renderer has more than is needed here.
+// The renderer has more items than these tests use.
 #[allow(dead_code)]
 #[path = "../../../../film/tests/film/render.rs"]
 mod render;
@@ -30,7 +30,7 @@ use walk::{Show, Varies, Walk, gait, truth};
 /// Pictures per second of the films.
 const RATE: f64 = 8.0;
 
-/// A studio whose camera has few pixels and is filled by the sheet.
+/// A studio whose camera has few pixels, to be fast, and whose picture is filled by the sheet.
 fn studio() -> Studio {
     let mut studio = Studio::random(&mut Rng::with_seed(4));
     (studio.size, studio.focal) = ([640, 360], 1.0);
@@ -82,7 +82,7 @@ fn film_of(
     folder
 }
 
-/// The words of a table, without its numbers and verdicts.
+/// The words of a table, without its numbers and verdicts, which change with every film.
 fn without_figures(table: &str) -> Vec<&str> {
     let verdict = ["more", "less", "errors", "agrees"];
     let part = ["ahead", "left", "turn", "mm", "deg"];

@@ -11,7 +11,7 @@ const PIXELS: f64 = 3.0;
 /// Millimetres per PDF point.
 const POINT: f64 = 25.4 / 72.0;
 
-/// The operands of each line of a text that ends in a PDF operator.
+/// The operands of each line of `text` that ends in the PDF operator `operator`.
 fn operands<'a>(text: &'a str, operator: &'a str) -> impl Iterator<Item = Vec<f64>> + 'a {
     let lines = text
         .lines()
@@ -23,7 +23,7 @@ fn operands<'a>(text: &'a str, operator: &'a str) -> impl Iterator<Item = Vec<f6
     })
 }
 
-/// Writes the sheet and returns its text, width and height in mm.
+/// Writes the sheet; returns the PDF's text, and the page's width and height in mm.
 fn sheet_on(paper: &str) -> (String, [f64; 2]) {
     let path = scratch().join(format!("sheets/{paper}.pdf"));
     let name = path.to_str().expect("a name");
@@ -40,8 +40,8 @@ fn sheet_on(paper: &str) -> (String, [f64; 2]) {
     (text, size)
 }
 
-/// The filled rectangles of a page as a picture, and the extent of the ink: least and greatest mm from the left,
-/// then from below.
+/// Draws the filled rectangles of a page as a picture. Also returns the extent of the ink: the least and
+/// greatest distance from the left edge, then from the lower edge, mm.
 fn drawn(text: &str, [width, height]: [f64; 2]) -> (Picture, [[f64; 2]; 2]) {
     let columns = (width * PIXELS) as usize;
     let rows = (height * PIXELS) as usize;
@@ -123,7 +123,7 @@ fn a_strip_has_a_line_of_100_mm_from_end_to_end() {
         .iter()
         .filter(|line| (line[2] * POINT - sheet::RULER).abs() < 0.01);
     assert_eq!(lines.count(), sheet::STRIPS);
-    // The outer edges of the end ticks are the ends of the line.
+    // The outer edges of the two end ticks are the end points of the line.
     let ticks = rectangles
         .iter()
         .filter(|line| (line[3] * POINT - 8.0).abs() < 0.01);

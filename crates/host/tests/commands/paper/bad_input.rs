@@ -1,4 +1,5 @@
-//! Bad input: each case its message, its exit code, and nothing half written.
+//! Bad input: each case has its message and its exit code, and leaves no half-written
+//! output.
 
 use lizard_time_limit::LIMIT;
 

@@ -8,7 +8,7 @@ use crate::program::{lizard, paper, read, root};
 fn the_errata_are_what_is_measured_and_every_correction_holds() {
     let entries = measure(SAMPLES);
     assert!(entries.iter().all(|entry| entry.is_settled()));
-    // One entry for each printed form: none is counted twice.
+    // Each printed form has one entry, so no erratum is counted twice.
     let listed = lizard("errata --samples 1 --json", "").json();
     let mut forms: Vec<String> = listed
         .as_array()
@@ -201,7 +201,8 @@ fn what_the_page_says_about_the_papers_walk_is_what_the_gaits_make() {
         let row = row.expect(name).split_whitespace();
         row.filter_map(|word| word.parse().ok()).collect()
     };
-    // The third mount is 41.4 deg and the fourth friction ratio 1.25; the row of a turn has two numbers per column.
+    // The third column of mounts is 41.4 deg, the fourth friction ratio 1.25; a row of a turn has two numbers per
+    // column.
     let [mounted, turned] = [
         numbers("mount, deg", "walk")[2],
         numbers("mount, deg", "left")[5],

@@ -172,7 +172,7 @@ fn rates_of_any_size_agree_with_differences() {
 
 #[test]
 fn a_point_leads_to_angles_and_back_to_the_point() {
-    // The last two would take a leg through its change point.
+    // The last two points can only be reached by taking a leg through its change point.
     for (point, safe) in [
         ("5 120", true),
         ("-6 118", true),
@@ -212,7 +212,7 @@ fn at_type_2_the_locked_servos_leave_the_papers_end_point_loose() {
     for mechanism in home.as_array().unwrap() {
         assert_eq!(mechanism["locked_freedoms"], 0, "{mechanism}");
     }
-    // Crank tips that coincide except for the seventh digit.
+    // With these angles the crank tips coincide to about six digits.
     let head = at("--theta1 70.528779 --theta4 109.471221 --theta8 318.59 --theta5 221.41");
     assert_eq!(
         (&head[0]["freedoms"], &head[0]["locked_freedoms"]),

@@ -237,7 +237,8 @@ fn the_trace_of_every_gait_can_be_solved_and_is_safe() {
 
 #[test]
 fn an_angle_that_a_servo_cannot_reach_is_not_safe() {
-    // A3 reaches only 20 degrees to one side: 400 us at 20 us per degree.
+    // A3 can turn only 20 degrees from neutral in one direction: 400 us at 20 us per
+    // degree.
     let robot = RobotFile::with(
         "short-travel",
         &[(
@@ -268,7 +269,7 @@ fn an_angle_that_a_servo_cannot_reach_is_not_safe() {
     );
     let table = lizard(&robot.of("pose"), "138.59,41.41,338.8,221.41\n");
     assert!(table.out.contains("| servo A3 would turn"), "{}", table.out);
-    // The inverse reports the tail point of that pose as unreachable, too.
+    // The inverse kinematics, too, reports the tail point of that pose as unreachable.
     let tail: Vec<f64> = beyond["tail"]
         .as_array()
         .unwrap()

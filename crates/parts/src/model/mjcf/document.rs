@@ -6,13 +6,14 @@ use crate::model::pieces::Piece;
 use crate::model::text::{escaped, joined, round};
 use crate::model::writer::Writer;
 
-/// Time of a step, s.
+/// Time step of the simulation, s.
 const STEP: f64 = 0.0002;
-/// Stiffness of constraints and limits, and below that of contacts: time constant, s, and damping ratio. A soft floor
-/// would hide part of a foot's excess length.
+/// Stiffness (`solref`) of constraints and limits: time constant, s, and damping ratio.
 const HARD: &str = "0.002 1";
+/// Stiffness (`solref`) of contacts: time constant, s, and damping ratio. A soft floor would hide part of a foot's
+/// excess length.
 pub(super) const CONTACT: &str = "0.001 1";
-/// Impedance of constraints and limits.
+/// Impedance (`solimp`) of constraints and limits.
 const STIFF: &str = "0.99 0.999 0.0001";
 
 impl Writer<'_> {
@@ -74,7 +75,7 @@ impl Writer<'_> {
         xml.leaf(format!(
             r#"texture name="floor" type="2d" builtin="checker" rgb1="0.75 0.75 0.72" rgb2="0.82 0.82 0.8" {SIZE}"#
         ));
-        // Makes a square 5 cm wide.
+        // Each square of the checker pattern becomes 5 cm wide.
         xml.leaf(r#"material name="floor" texture="floor" texrepeat="10 10" texuniform="true""#);
         for Piece { name, mesh, .. } in shown {
             let corners = mesh.corners.as_flattened().iter();

@@ -106,7 +106,7 @@ impl Writer<'_> {
     }
 }
 
-/// The attribute of a joint's dry friction, N or N m; empty if there is none.
+/// The attributes for a joint's dry friction, N or N m; empty for a joint without friction.
 fn friction_loss(friction: f64) -> String {
     match friction > 0.0 {
         // MuJoCo's default friction constraint is soft: a servo that hardly moves would have less friction.

@@ -134,7 +134,7 @@ fn every_sample_of_every_servo_is_checked() {
 
 #[test]
 fn a_swing_backward_is_as_fast_as_one_forward() {
-    // All legs run with a negative gain, so their swings go backward.
+    // All legs have a negative gain, so they swing backward.
     let against = "[gait.against]\nlike = \"walk\"\ngain = { LF = -1.0, RF = -1.0, RH = -1.0, LH = -1.0 }\n[gait.trot]";
     let robot = with("unequal", &[("[gait.trot]", against)]).expect("a gait");
     let speed = |name: &str| robot.gait(name).expect(name).audit().peak.speed;

@@ -4,6 +4,7 @@ use crate::testing::{robot, text_before_gaits};
 use crate::{Error, Robot};
 use lizard_core::console::word::Word;
 
+/// The paper's robot with these gaits instead of its own.
 fn paper_with_gaits(gaits: &str) -> Result<Robot, Error> {
     Robot::parse(&format!("{}{gaits}", text_before_gaits("paper")))
 }
@@ -140,7 +141,7 @@ fn a_name_may_have_48_characters() {
     );
 }
 
-/// The error of a robot whose gaits take too many bytes.
+/// The end of the message for a robot whose gaits take too many bytes.
 const LEAVE_OUT: &str = "leave out gaits, first those whose waveform no other has";
 
 #[test]
@@ -157,7 +158,7 @@ fn a_robot_may_have_as_many_gaits_as_its_section_has_room_for() {
         many.gait("walk79").map(|gait| gait.table_sweeps(99)),
         many.gait("walk").map(|gait| gait.table_sweeps(99))
     );
-    // This also holds if there is no room for the maps of cells.
+    // More gaits leave no room for the maps of cells, but are accepted until the section is full.
     for count in 80..255 {
         match paper_with_gaits(&gaits(count)) {
             Ok(robot) => {

@@ -1,4 +1,4 @@
-//! A cell of two servos' angles, and the proof that all of its poses keep a condition.
+//! A cell: a rectangle of two servos' angles. Proves that all poses of a cell keep a condition of the guard.
 
 use std::f64::consts::TAU;
 
@@ -9,7 +9,7 @@ use lizard_kinematics::Vector;
 /// too wide by about the cell's size, so each division certifies cells at half the distance from a limit.
 const DIVISIONS: u32 = 4;
 
-/// Allowance for floating-point errors, as a sine and in mm; far more than they are.
+/// Allowance for floating-point errors, both as a sine and in mm; far larger than these errors are.
 pub(super) const ROUNDING_ALLOWANCE: f64 = 1e-9;
 
 /// A range of one servo's angles in the chassis frame, in 1/65536 turn.
@@ -19,7 +19,7 @@ pub(super) struct Span {
     pub high: f64,
 }
 
-/// The ranges of two servos' angles: that of a map's row and that of its column.
+/// The ranges of two servos' angles: first that of a map's row, then that of its column.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cell(pub [Span; 2]);
 
@@ -30,13 +30,13 @@ pub(super) enum Verdict {
     Kept,
     /// The centre of the cell breaks the condition.
     Broken,
-    /// The bounds are too wide for a decision.
+    /// The bounds over the cell are too wide for a decision.
     Open,
 }
 
 /// A condition of the guard that depends on two servos.
 pub(super) trait Condition {
-    /// The indices of the servos of row and column.
+    /// The indices of the servo of the rows and the servo of the columns.
     fn servos(&self) -> [usize; 2];
 
     /// Judges the condition over a cell.
@@ -75,7 +75,7 @@ impl Span {
 }
 
 impl Cell {
-    /// True if a condition is proven in the whole cell.
+    /// True if a condition is proven in the whole cell, divided up to [`DIVISIONS`] times.
     pub fn proves(&self, condition: &impl Condition) -> bool {
         self.proves_within(condition, DIVISIONS)
     }

@@ -1,19 +1,19 @@
-//! The conditions of an end over a cell: its couplers, its elbows and its legs.
+//! The conditions of the guard for the head or tail five-bar over a cell: the sines at its couplers, elbows and legs.
 //!
-//! While the crank angles go from the cell's centre to any other pose of the cell, the crank tips move by at most
-//! crank length times angle, and so does the line `k` between them. Three bounds follow:
+//! While the crank angles change from the cell's centre to any other pose of the cell, each crank tip moves by at
+//! most crank length times angle, and the line `k` between the tips changes by at most the sum. Three bounds follow:
 //!
-//! * The tips' distance is in a range, and so is the sine between the couplers, the type-2 margin;
+//! * The distance of the tips is in a range, and so is the sine between the couplers, the type-2 margin;
 //!   [`bounds::End::least`] is its smallest value. The tips cannot cross if their distance along the base is more
-//!   than they can move.
+//!   than the two tips can move.
 //! * From `a u2 - b u3 = k`, with couplers of directions `u2` and `u3` over the line `k`: the left coupler turns by
-//!   at most `|dk| / (a sin(theta3 - theta2))`, and the right one by the same with `b` instead of `a`. The crank
-//!   turns by half the cell. So the type-1 margin, a sine, is smaller than at the centre by at most the sum of
-//!   both.
-//! * A leg's margin is the sine of its own crank angle, which is smallest at an end of its range.
+//!   at most `|dk| / (a sin(theta3 - theta2))`, and the right one by the same with `b` instead of `a`. Each crank
+//!   turns by at most half the width of its range. So the type-1 margin, a sine, is smaller than at the centre by
+//!   at most the sum of the turns of crank and coupler.
+//! * A leg's margin is the sine of its own crank angle, which is smallest at an end point of the angle's range.
 //!
-//! The integers' margins are smaller than these by at most their error bounds, and must still keep the integers'
-//! limits.
+//! The guard computes with integers. Its margins are smaller than these by at most their error bounds, and must
+//! still keep the guard's limits.
 
 use lizard_core::guard::bounds::{self, DIRECTION};
 use lizard_core::numbers::limits::Limits;
@@ -24,7 +24,7 @@ use lizard_kinematics::{AssemblyMode, End, FiveBar, Lizard, Vector};
 use super::cell::{Cell, Condition, ROUNDING_ALLOWANCE, Span, Verdict};
 use crate::units::ONE_Q15;
 
-/// The conditions of head or tail.
+/// The conditions of the guard for the head or tail five-bar.
 pub(super) struct EndConditions {
     end: End,
     bars: FiveBar,
@@ -52,7 +52,7 @@ impl EndConditions {
         }
     }
 
-    /// Smallest sine of a leg over its servo's range, which is less than half a turn.
+    /// Returns the smallest sine of a leg over a range of its servo's angles, which is narrower than half a turn.
     fn least_leg(&self, span: &Span) -> f64 {
         let half = span.half();
         let Vector { x: cos, y: sin } = self.end.mirror(span.direction());
@@ -126,7 +126,8 @@ mod tests {
     use super::*;
     use crate::testing::robot;
 
-    /// The neutral pose of the head of a robot without symmetry, as a cell, and its conditions without limits.
+    /// Makes a cell of a single pose, the neutral one, for the head of a robot without symmetry, and conditions whose
+    /// limits every pose keeps.
     fn standing() -> (EndConditions, Cell) {
         let robot = robot("unequal");
         let numbers = robot.content();
@@ -196,7 +197,7 @@ mod tests {
                 high: angle,
             }
         };
-        // The right crank leans far to the left, so that the tips pass well above each other.
+        // The right crank leans far to the left, so that one tip passes well above the other and the linkage closes.
         let right = turn(165.0);
         let gap = |left: Span| {
             let left = left.direction();
@@ -205,7 +206,7 @@ mod tests {
                 .gap
                 .x
         };
-        // The left crank's angle at which one tip is directly above the other.
+        // Bisects for the left crank's angle at which one tip is directly above the other.
         let (mut apart, mut crossed) = (150.0, 10.0);
         assert!(gap(turn(apart)) > 0.0 && gap(turn(crossed)) < 0.0);
         for _ in 0..60 {

@@ -1,10 +1,11 @@
 //! The maps of cells in which the integer guard is proven to accept every pose.
 //!
 //! On the chip, computing the distance of a pose from every hazard takes most of a frame's time. Every condition
-//! depends on one servo or on the two servos of an end or of a side. So the poses that are far from every limit can
-//! be listed in advance, in four maps over pairs of servos: [`lizard_core::numbers::cells`]. This module computes
-//! them from the robot's true lengths, with bounds over a whole cell and a bound of the integers' error. No pose is
-//! sampled, so the proof holds for every pose in a cell.
+//! depends on one servo, on the two servos of the head or tail five-bar, or on the two servos of a side. So the poses
+//! that are far from every limit can be listed in advance, in four maps over pairs of servos:
+//! [`lizard_core::numbers::cells`]. This module computes the maps from the robot's true lengths, with bounds over a
+//! whole cell and a bound of the error of the guard's integers. No pose is sampled, so the proof holds for every
+//! pose in a cell.
 
 mod cell;
 mod end;
@@ -38,7 +39,7 @@ pub struct CellMaps {
 const NO_CELL: [i8; 2] = [1, 0];
 
 impl CellMaps {
-    /// Computes the maps from the true lengths and from the integers.
+    /// Computes the maps from the true lengths and from the integers that the firmware computes with.
     pub(crate) fn new(lizard: &Lizard, numbers: &Content) -> Self {
         let end = |end: End| certify(&end::EndConditions::new(lizard, numbers, end), numbers);
         let side =
@@ -51,7 +52,7 @@ impl CellMaps {
         }
     }
 
-    /// True if a pose is certified, so the guard accepts it.
+    /// True if a pose is certified in all four maps, so that the guard accepts it.
     pub fn contains(&self, pose: &Pose) -> bool {
         let [a1, a2, a3, a4] = pose.0;
         self.head.cells().contains(a1, a2)
@@ -61,7 +62,7 @@ impl CellMaps {
     }
 }
 
-/// Finds the cells in which a condition is proven.
+/// Makes the map of the cells in which a condition is proven.
 fn certify(rule: &impl Condition, numbers: &Content) -> Map {
     let [row, column] = rule.servos().map(|servo| Servo {
         neutral: numbers.neutral[servo],
@@ -104,13 +105,13 @@ struct Servo {
 }
 
 impl Servo {
-    /// The cells that the servo's travel touches, of those that a map can contain.
+    /// Returns the indices of the cells that overlap the servo's travel, within the range that a map can contain.
     fn cells(&self, bits: u32, allowed: RangeInclusive<i32>) -> RangeInclusive<i32> {
         let [min, max] = [self.travel.min, self.travel.max].map(|end| i32::from(end.0 >> bits));
         min.max(*allowed.start())..=max.min(*allowed.end())
     }
 
-    /// The chassis-frame angles of a cell, from its first sweep to its last.
+    /// Returns the range of a cell's angles in the chassis frame, from its first sweep to its last.
     fn span(&self, cell: i32, bits: u32) -> Span {
         let first = f64::from(i32::from(self.neutral.0) + (cell << bits));
         Span {
@@ -120,7 +121,8 @@ impl Servo {
     }
 }
 
-/// The contiguous run of columns that keep a condition, around the one of them that is nearest to neutral.
+/// Finds the first and last of the contiguous columns that keep a condition, around the kept column nearest to
+/// neutral. Returns [`NO_CELL`] if no column keeps it.
 fn certified_columns(columns: &RangeInclusive<i32>, is_kept: impl Fn(i32) -> bool) -> [i8; 2] {
     let mut outwards: Vec<i32> = columns.clone().collect();
     outwards.sort_by_key(|column| (2 * column + 1).abs());

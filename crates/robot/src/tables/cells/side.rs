@@ -1,9 +1,8 @@
 //! The condition of a side over a cell: its slider stays within its stroke.
 //!
-//! While the crank angles go from the cell's centre to any other pose of it, the tips of
-//! the arms move by at most arm times angle, and the slider's length by as much. With the
-//! error bound of the integers added, the length must still be within the integers'
-//! stroke.
+//! While the servo angles change from the cell's centre to any other pose of the cell, the tip of each arm moves by
+//! at most arm length times angle, and the slider's length changes by at most the sum. With the error bound of the
+//! guard's integers added, the length must still be within the guard's stroke.
 
 use lizard_core::guard::bounds;
 use lizard_core::numbers::section::Content;
@@ -18,7 +17,7 @@ pub(super) struct StrokeCondition {
     slider: Slider,
     /// Error bound of the integers, mm.
     error: f64,
-    /// Least and greatest length of the slider, mm.
+    /// Smallest length of the slider within its stroke, mm; `max` is the largest.
     min: f64,
     max: f64,
 }

@@ -1,4 +1,4 @@
-//! Compares the maps with the integer guard, which does not use them.
+//! Compares the maps with the integer guard: [`Clearance`] computes a pose's margins without the maps.
 
 use lizard_core::guard::clearance::Clearance;
 use lizard_core::numbers::gaits::GaitId;
@@ -17,7 +17,7 @@ use crate::tables::table::Tables;
 use crate::testing::{all, robot};
 use crate::{Robot, Servo};
 
-/// The measures of a robot.
+/// Collects the measures of a robot, which tests then change.
 fn measures(robot: &Robot) -> Measures {
     Measures {
         lizard: *robot.lizard(),
@@ -34,7 +34,7 @@ fn measures(robot: &Robot) -> Measures {
     }
 }
 
-/// Random robots without symmetry: their links, limits and servos vary.
+/// Makes a strategy of random robots without symmetry: their links, limits and servos vary.
 fn random() -> impl Strategy<Value = Measures> {
     let paper = robot("paper");
     let end = || (15.0..40.0, 22.0..45.0, 45.0..75.0, 45.0..75.0, 22.0..45.0);
@@ -81,11 +81,11 @@ fn random() -> impl Strategy<Value = Measures> {
 /// A map, and the conditions of the guard that hold in its cells.
 struct Part<'a> {
     map: &'a Map,
-    /// Indices of the servo of the rows and that of the columns.
+    /// Index of the servo of the rows, and index of the servo of the columns.
     servos: [usize; 2],
-    /// Indices in [`Clearance::margins`].
+    /// Indices in [`Clearance::margins`] of the margins that the map certifies.
     margins: &'static [usize],
-    /// Index in [`Clearance::sliders_sq`].
+    /// Index in [`Clearance::sliders_sq`] of the slider that the map certifies; `None` in the maps of head and tail.
     slider: Option<usize>,
 }
 
@@ -105,7 +105,7 @@ impl Subject {
         }
     }
 
-    /// A subject without gaits.
+    /// Makes a subject without gaits from measures alone.
     fn still(name: &str, measures: &Measures) -> Self {
         let content = numbers::content(name, measures, &Tables::new(&[]).expect("no gait"), &[]);
         Self {
@@ -136,8 +136,9 @@ impl Subject {
         ]
     }
 
-    /// Counts the cells, if the guard accepts some pairs of angles in every one, by the margins
-    /// and sliders that depend on the pair. Else returns the first pair that it refuses.
+    /// Checks that the guard accepts seven pairs of angles in every cell: the corners, the centre and two random
+    /// ones. Compares only the margins and sliders that the map certifies. Returns the number of cells, or the first
+    /// refused pose.
     fn check(&self, runner: &mut TestRunner) -> Result<usize, String> {
         let Limits { type2, type1, leg } = self.robot.limits();
         let min = [type2, type2, type1, type1, type1, type1, leg, leg, leg, leg];
@@ -233,8 +234,8 @@ fn the_guard_accepts_every_pose_that_all_four_maps_hold() {
     }
 }
 
-/// Each limit alone, a little stricter than in the maps, is broken in some cell: so the
-/// comparison notices a wrong map.
+/// Makes one limit after another a little stricter than in the maps; a cell then breaks it. So the comparison
+/// notices a wrong map.
 #[test]
 fn a_stricter_limit_than_that_of_the_maps_is_broken_in_a_cell() {
     let robot = robot("unequal");
@@ -272,7 +273,7 @@ fn maps_fit_into_a_section_and_begin_and_end_with_a_cell() {
     }
 }
 
-/// The share of a gait's phases at which its pose is within the cells.
+/// Returns the share of a gait's phases at which all four maps contain its pose.
 fn share(robot: &CoreRobot, maps: &CellMaps, gait: GaitId) -> f64 {
     let gait = robot.gait(gait);
     let held = (0..1u32 << 16)

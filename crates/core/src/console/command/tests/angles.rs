@@ -1,8 +1,8 @@
-//! The angles of `pose`, in every way to write them.
+//! The angles of `pose`, in every notation.
 
 use super::*;
 
-/// `pose` with one angle among three others.
+/// A `pose` line with this angle at an index, and neutral angles at the other three.
 fn pose_with(index: usize, angle: &str) -> String {
     let mut words = ["138.59", "41.41", "318.59", "221.41"].map(ToString::to_string);
     words[index] = angle.to_string();

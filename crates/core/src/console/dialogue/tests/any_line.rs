@@ -69,7 +69,7 @@ proptest! {
             printed.extend(apart.send(&[*byte]));
             printed.extend(apart.run(frames));
         }
-        // All but status say the same at any time.
+        // Only the answer to `status` depends on time; it is the one with `=`.
         let timeless = |printed: Vec<String>| -> Vec<String> {
             printed.into_iter().filter(|line| !line.contains('=')).collect()
         };

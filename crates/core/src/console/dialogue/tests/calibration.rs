@@ -199,7 +199,7 @@ fn a_factory_or_a_load_that_is_refused_changes_nothing() {
     other.board.memory.bytes_mut()[44] ^= 1;
     other.refuse("load", "9 ");
     assert_eq!(cal(&mut other), before);
-    // A trim moves the travel: this pose is within it, but not within robot.toml's.
+    // A trim moves the travel: the pose below is within the moved travel, but not within robot.toml's.
     let narrow = Sweep(2200);
     let robot = Sample::odd().with(|content| content.calibration[0].max = narrow);
     let mut narrow = awake(robot);
@@ -297,7 +297,7 @@ fn a_travel_may_not_end_before_a_pose_that_is_to_come_next() {
     let mut dialogue = standing();
     dialogue.say("sway left");
     dialogue.run(150);
-    // Far outside of all gaits. The gait brakes first, so the pose is still in the future.
+    // The pose is far outside of all gaits. The gait brakes first, so the move to the pose has not begun yet.
     dialogue.accept("pose 152 50 311 224.5");
     dialogue.run(2);
     let refused = dialogue.say("limit 1 115 150");

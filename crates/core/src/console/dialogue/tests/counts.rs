@@ -2,8 +2,7 @@
 
 use super::*;
 
-/// Frames within which three cycles of `sway` end, the move to it and the braking
-/// included.
+/// Frames that are enough for the move to `sway`, three of its cycles, and the braking.
 const LONG_FRAMES: u32 = 400;
 
 #[test]
@@ -83,7 +82,7 @@ fn a_low_supply_makes_a_count_take_longer_and_does_not_end_it() {
             .expect("an end")
     };
     let (full, slow) = (frames(None), frames(Some(4_400)));
-    // An upper bound, since the frames of speeding up and braking hardly change.
+    // An upper bound: at a lower pace, the cycles take longer, but speeding up and braking hardly do.
     let most = full * 100 / u32::from(SLOW_PACE);
     assert!(
         slow > u32::midpoint(full, most) && slow < most,

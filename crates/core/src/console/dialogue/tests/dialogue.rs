@@ -1,4 +1,4 @@
-//! A robot and the user at the other end of its line.
+//! A robot and the user at the other end of its serial line.
 
 use std::collections::HashMap;
 use std::string::{String, ToString};
@@ -10,7 +10,7 @@ use crate::virtual_board::{Running, reading};
 /// Frames until the robot stands and may begin to move.
 pub(super) const WAKING: u32 = 21;
 
-/// A running robot of these tests.
+/// A running robot with its console.
 pub(super) type Dialogue = Running;
 
 /// The odd robot, awake, with its banner read.
@@ -31,12 +31,12 @@ pub(super) fn awake(robot: Sample) -> Dialogue {
     dialogue
 }
 
-/// The pulses of a frame.
+/// Runs a frame and returns its pulse widths, CPU cycles.
 pub(super) fn widths(dialogue: &mut Dialogue) -> [u16; 4] {
     dialogue.frame().0.map(|width| width.0)
 }
 
-/// Splits `key=value` pairs, and checks that each key occurs once.
+/// Splits a text into `key=value` pairs, and checks that each key occurs once.
 pub(super) fn pairs(text: &str) -> HashMap<String, String> {
     let mut pairs = HashMap::new();
     for word in text.split(' ') {

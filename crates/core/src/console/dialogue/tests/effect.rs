@@ -1,4 +1,4 @@
-//! The declared effect of each word, compared with the observed one.
+//! The declared effect of each console word on the servos, compared with the observed one.
 
 use super::*;
 use crate::console::word::Effect;

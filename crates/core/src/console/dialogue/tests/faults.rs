@@ -149,7 +149,7 @@ fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
     dialogue.accept("stand");
 }
 
-/// Servos that were held in a pose, with the pulses of robot.toml.
+/// The state of servos that were held in a pose by the pulses of robot.toml.
 fn held(sweeps: [i16; 4]) -> Stance {
     let pose = Pose(sweeps.map(crate::numbers::units::Sweep));
     Stance {
@@ -160,6 +160,7 @@ fn held(sweeps: [i16; 4]) -> Stance {
     }
 }
 
+/// The restart number `count` after a hang, with this state of the servos before it.
 fn hung(count: u8, stance: Stance) -> Restart {
     Restart {
         cause: Cause::Watchdog,
@@ -310,7 +311,7 @@ fn a_robot_that_rests_stays_at_rest_through_every_reset_but_power() {
         }
         assert_eq!(*dialogue.board.memory.bytes(), kept, "{cause:?}");
         assert!(dialogue.board.memory.log.is_empty(), "it is there already");
-        // `boot` is `stand`; a hang cancels it.
+        // The `boot` setting is `stand`; a hang cancels it.
         let printed = dialogue.run(1);
         let boots = printed.iter().any(|line| line == "# boot: stand");
         assert_eq!(boots, cause != Cause::Watchdog, "{printed:?}");
@@ -339,7 +340,7 @@ fn the_pose_of_a_rest_that_a_reset_cut_off_reaches_the_memory_after_it() {
 
 #[test]
 fn repeated_brown_outs_or_presses_end_in_a_rest_until_a_motion_is_ordered() {
-    // A boot loader hides which of the two it was.
+    // Because a boot loader hides the cause, a press counts like a brown-out.
     for (boot_loader, cause) in [
         (false, Cause::BrownOut),
         (true, Cause::BrownOut),

@@ -1,4 +1,4 @@
-//! Steps of routines that a contact ends: a button to press, a nose that meets a wall.
+//! Steps of routines that a contact ends: a button that is pressed, or a nose switch that touches a wall.
 
 use super::*;
 use crate::numbers::gaits::{Input, Step};
@@ -21,10 +21,10 @@ const PATROL: [(u8, &str, u16); 6] = [
     (CYCLES, "sway left", 1),
 ];
 
-/// Frames in which a contact counts as closed.
+/// Frames after which a closed contact counts as closed.
 const DEBOUNCED: u32 = 3;
 
-/// More frames than any step here that has an end.
+/// More frames than any step with an end takes in these tests.
 const LONG_FRAMES: u32 = 600;
 
 fn begun(rounds: u16, steps: &[(u8, &str, u16)]) -> Dialogue {
@@ -39,7 +39,7 @@ fn set(dialogue: &mut Dialogue, input: Input, is_closed: bool) {
     dialogue.board.closed |= bit * u32::from(is_closed);
 }
 
-/// Closes the contact for this many frames, then opens it; returns the lines printed meanwhile.
+/// Closes a contact for this many frames, then opens it; returns the lines printed meanwhile.
 fn press(dialogue: &mut Dialogue, input: Input, frames: u32) -> Vec<String> {
     set(dialogue, input, true);
     let lines = dialogue.run(frames);
@@ -55,7 +55,8 @@ fn gait(dialogue: &Dialogue) -> String {
     }
 }
 
-/// Frames until the robot's activity changes, at most [`LONG_FRAMES`], and the new activity.
+/// Runs until the robot's activity changes, at most [`LONG_FRAMES`] frames; returns the number of frames and the
+/// activity.
 fn run_until_change(dialogue: &mut Dialogue) -> (u32, String) {
     let before = gait(dialogue);
     for frames in 0..LONG_FRAMES {
@@ -236,7 +237,7 @@ fn a_wait_brakes_the_gait_before_it_within_the_slew_limit() {
     );
 }
 
-/// Robots in each wait of the patrol.
+/// Two robots on patrol: one waits for the button, the other walks until the nose switch closes.
 fn waiting() -> [Dialogue; 2] {
     let mut for_button = begun(0, &PATROL);
     for_button.run(100);

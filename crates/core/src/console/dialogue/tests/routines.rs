@@ -16,14 +16,14 @@ const STEPS: [(u8, &str, u16); 5] = [
     (CYCLES, "sway left", 1),
 ];
 
-/// More frames than a round takes.
+/// More frames than a round of the routine takes.
 const LONG_FRAMES: u32 = 1_500;
 
 fn robot(rounds: u16) -> Sample {
     Sample::odd().with_routine("patrol", rounds, &STEPS)
 }
 
-/// The gaits of a robot in these frames, one after another, and the lines printed.
+/// Runs a robot for some frames; returns its gaits, one after another, and the lines that it printed.
 fn run_recording_gaits(dialogue: &mut Dialogue, frames: u32) -> (Vec<String>, Vec<String>) {
     let (mut gaits, mut printed): (Vec<String>, Vec<String>) = Default::default();
     for _ in 0..frames {
@@ -249,7 +249,7 @@ fn a_rest_in_a_routine_ends_the_pulses_and_the_servos_wake_one_by_one() {
     }
     assert_eq!(printed, ["# done"]);
     assert_eq!(pulsing_counts, [4, 0, 1, 2, 3, 4, 0, 1, 2, 3, 4]);
-    // 50 frames each, and five more until the first servo wakes.
+    // Each of the two rests takes 50 frames, and the first servo wakes five frames later.
     assert!(
         (100..=112).contains(&frames_without_pulses),
         "{frames_without_pulses}"

@@ -73,7 +73,7 @@ fn the_longest_possible_status_fits_a_line() {
     dialogue.board.count_lost(u16::MAX);
     dialogue.accept(name);
     let line = dialogue.say("status");
-    // Each number as long as it gets.
+    // The longest value of each key.
     let values = pairs(line.strip_prefix("ok ").expect("a status"));
     let longest = [
         ("phase", "0.999"),

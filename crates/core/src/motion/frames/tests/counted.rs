@@ -26,7 +26,7 @@ fn cycles(motion: &mut Motion) -> (f64, u32) {
     }
 }
 
-/// The share of a cycle that a gait covers in a frame.
+/// The share of a cycle that a gait covers in a frame at full pace; negative for a gait that runs backwards.
 fn in_a_frame(motion: &Motion, name: &str) -> f64 {
     f64::from(motion.robot.gait(motion.robot.id(name)).increment) / f64::from(CYCLE)
 }

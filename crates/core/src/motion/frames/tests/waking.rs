@@ -1,4 +1,4 @@
-//! Rest, and how the servos wake one after another when it ends.
+//! Tests of rest, and of waking the servos one after another when it ends.
 
 use super::*;
 

@@ -23,7 +23,7 @@ const SIGN_ANGLES: [f64; 4] = [10.0, 5.0, -10.0, -5.0];
 const SCALE_ANGLES: [f64; 6] = [30.0, -30.0, 20.0, -20.0, 10.0, -10.0];
 /// The longest time to wait for the end of a motion.
 const MOTION_TIMEOUT: Duration = Duration::from_secs(5);
-/// Interval between two `status` commands during that wait.
+/// Interval between two `status` commands while waiting for the end of a motion.
 const LOOK: Duration = Duration::from_millis(25);
 
 /// A key with a meaning in the guide.
@@ -154,7 +154,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             }
         }
         if self.is_walking {
-            // Also keeps `deadman` from ending the gait.
+            // This question also keeps `deadman` from ending the gait.
             let reply = self.link.ask("status")?;
             self.is_walking = Status::parse(&reply.answer).is_some_and(|status| status.is_moving());
         }
@@ -224,7 +224,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         refusal.map_or(Ok(()), Err)
     }
 
-    /// Moves one servo to this many degrees from its neutral angle, and the others to theirs.
+    /// Moves one servo to this many degrees from its neutral angle, and the others to their neutral angles.
     fn turn_to(&mut self, servo: usize, degrees: f64) -> Result<(), LinkError> {
         let mut pose = self.neutral;
         pose[servo] = (pose[servo] + degrees).rem_euclid(360.0);
@@ -259,8 +259,8 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         Ok(())
     }
 
-    /// Moves one end of a servo's travel by one degree in the direction of `degrees`: the first
-    /// end for the keys of 0.5 degrees, the second for those of 0.1.
+    /// Moves one limit of a servo's travel by one degree in the direction of `degrees`: the first limit for the
+    /// keys of 0.5 degrees, the second limit for the keys of 0.1.
     fn limit(&mut self, servo: usize, degrees: f64) -> Result<(), LinkError> {
         let mut next = self.now.clone();
         let servo_settings = &mut next.servos[servo];

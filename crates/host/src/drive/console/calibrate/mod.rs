@@ -127,7 +127,7 @@ fn is_suspend(key: KeyEvent) -> bool {
     key.code == KeyCode::Char('z') && key.modifiers.contains(KeyModifiers::CONTROL)
 }
 
-/// The meaning of a pressed key; `None` if it has none here.
+/// The meaning of a key in the guide; `None` if it has none, or was released.
 fn meaning(key: KeyEvent) -> Option<Key> {
     if key.kind == KeyEventKind::Release {
         return None;

@@ -99,10 +99,10 @@ impl Session {
     pub(super) fn frames(&self, robot: &Robot) -> FrameLog {
         let mut widths: Vec<[u16; 4]> = vec![[0; 4]; (self.end_ms() / FRAME_MS) as usize + 1];
         let mut resting = false;
-        // The robot's frame count and our index at the last pose at which the two were matched.
+        // The robot's frame count and the index in `widths` at the last pose for which the clock matched them.
         let mut matched: Option<(u64, usize)> = None;
         let mut count = 0;
-        // Our index of the last pose; `None` if the robot has rested or was reset since.
+        // The index in `widths` of the last pose; `None` if the robot has rested or was reset since.
         let mut last: Option<usize> = None;
         for entry in &self.entries {
             match &entry.event {

@@ -215,7 +215,8 @@ fn lines_that_fail_are_counted_once_and_the_first_is_named() {
     );
 }
 
-/// Runs the session for `ms`; returns the lines that it sends, with their times in ms.
+/// Runs the session for `ms`, with the robot's answers from `answer`; returns the lines that the session sends,
+/// with their times in ms.
 fn sent(
     session: &mut Session,
     from: Instant,

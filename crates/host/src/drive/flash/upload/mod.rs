@@ -7,7 +7,7 @@
 //!
 //! A robot alone is written in the same way: the first page of its section is blanked first, and written last. The
 //! firmware then finds either a valid robot or none; without one it reports a fault and moves no servo. Since the
-//! code stays, it must be code that can read this robot: its mark ([`lizard_core::numbers::mark`]) is checked
+//! code stays, it must be code that can read this robot: its version mark ([`lizard_core::numbers::mark`]) is checked
 //! before anything is written.
 //!
 //! Pages that are already right are not written: this saves time, and flash wears out (10 000 writes, ATmega328P
@@ -134,7 +134,7 @@ pub enum FlashState {
     Unchanged,
     /// Flash holds the loop that does nothing, and a part of the code.
     HalfProgram,
-    /// Flash holds the firmware, and no robot that it could move.
+    /// Flash holds the firmware and an incomplete robot, which the firmware rejects.
     HalfRobot,
 }
 
@@ -215,7 +215,9 @@ pub fn upload<B: Board>(
 
 /// The reason why one attempt ended.
 enum AttemptError {
+    /// The boot loader failed; another attempt may help.
     Loader(LoaderError),
+    /// The upload failed for good.
     Error(UploadError),
 }
 
@@ -225,6 +227,7 @@ impl From<LoaderError> for AttemptError {
     }
 }
 
+/// An upload in progress.
 struct Upload<'a, B> {
     loader: &'a mut Loader<B>,
     image: &'a Image,
@@ -291,7 +294,7 @@ impl<B: Board> Upload<'_, B> {
     }
 
     /// Reads flash up to the boot loader and reports its contents. For a robot alone, reads only the first page of
-    /// the code.
+    /// the code and the pages of the old and the new robot.
     fn read_flash(&mut self, boot: usize) -> Result<Vec<u8>, AttemptError> {
         let mut flash = vec![BLANK; BOOT];
         if self.image.is_robot_alone() {
@@ -378,8 +381,8 @@ impl<B: Board> Upload<'_, B> {
     }
 }
 
-/// The end address of the robot in flash, according to its header, or its start if the header is not valid. Needs
-/// only the first page of the robot.
+/// Returns the end address of the robot in flash by its header, or its start address if the header is not valid.
+/// Needs only the first page of the robot.
 fn end_of_robot(flash: &[u8], boot: usize) -> usize {
     let start = usize::from(START);
     let header: Header = Region::new(&flash[start..]).read(0);
@@ -391,7 +394,7 @@ fn end_of_robot(flash: &[u8], boot: usize) -> usize {
     }
 }
 
-/// Index of the first byte in which two pages differ.
+/// Index of the first byte in which two pages differ; `None` if they are equal.
 fn difference(a: &[u8], b: &[u8]) -> Option<usize> {
     a.iter().zip(b).position(|(a, b)| a != b)
 }

@@ -20,14 +20,14 @@ fn image() -> Image {
     Image::new(bytes(600, 3)).expect("it fits")
 }
 
-/// The pages of [`image`].
+/// The addresses of the pages of [`image`].
 const PAGES: [usize; 5] = [0, 0x80, 0x100, 0x180, 0x200];
 
 fn bytes(count: usize, factor: usize) -> Vec<u8> {
     (0..count).map(|at| (at * factor + 1) as u8).collect()
 }
 
-/// A board that has the image.
+/// A board whose flash holds [`image`].
 fn with_image() -> Double {
     Double::with(image().bytes())
 }
@@ -48,7 +48,7 @@ fn run_with(board: Double, image: &Image) -> Run {
     run_as(board, image, Target::default())
 }
 
-/// Uploads to a board; `target` is known about it beforehand.
+/// Uploads to a board. `target` is what is known about the board before its boot loader answers.
 fn run_as(board: Double, image: &Image, target: Target) -> Run {
     let timeouts = Timeouts {
         blink_time: Duration::ZERO,
@@ -94,7 +94,7 @@ impl Run {
     }
 }
 
-/// A board with the firmware and this robot.
+/// A board with the firmware and the robot of this name.
 fn with_robot(name: &str) -> Double {
     Double::with(whole_image(name).bytes())
 }

@@ -1,7 +1,7 @@
 //! The panel with the optional push button and obstacle switch, drawn if robot.toml has `[input]`.
 //!
-//! When active, each pulls its pin low. Otherwise the board's own pull-up holds the pin high, so no
-//! resistor is needed.
+//! An active button or switch pulls its pin low. Otherwise the board's own pull-up holds the pin
+//! high, so no resistor is needed.
 
 use lizard_robot::Robot;
 use svg::node::element::Group;
@@ -13,13 +13,15 @@ use crate::shared::ink::{
 
 /// Height of the panel, pixels.
 const HEIGHT: f64 = 214.0;
-/// x of the board's pins, and of the pins of button and module, pixels.
+/// x of the board's pins, pixels.
 const BOARD: f64 = 120.0;
+/// x of the pins of the button and of the obstacle switch, pixels.
 const THING: f64 = 400.0;
 /// Pixels from a row to the next one.
 const ROW: f64 = 26.0;
-/// Distances of the first rows of button and module from the panel's top, pixels.
+/// Distance of the button's first row from the panel's top, pixels.
 const BUTTON: f64 = 58.0;
+/// Distance of the obstacle switch's first row from the panel's top, pixels.
 const NOSE: f64 = 122.0;
 
 /// Height of a robot's panel, pixels; 0 if the robot has no inputs.
@@ -50,7 +52,7 @@ pub fn draw(robot: &Robot, top: f64) -> Group {
 /// A wire from the board to a component; `names` are the component, the board's pin, and a label.
 fn wire(group: Group, names: [&str; 3], y: f64, colour: &'static str) -> Group {
     let [thing, of_board, of_thing] = names;
-    // The wire crosses no other, and a white edge would cut the component's outline.
+    // The wire crosses no other wire, so it needs no white edge, which would cut the component's outline.
     let path = curve(&[(BOARD, y), (THING, y)], colour, THIN);
     group
         .add(path.set("id", format!("input-{thing}-{of_board}")))

@@ -23,10 +23,13 @@ use crate::shared::ink::{
 use wire::{BLACK, THICK, THIN, Wire, end};
 
 const WIDTH: f64 = 700.0;
-/// The servos on the page: middle of the first, distance to the next, upper end, and size.
+/// Horizontal position of the middle of the leftmost servo.
 const FIRST: f64 = 170.0;
+/// Distance between the middles of neighbouring servos.
 const APART: f64 = 118.0;
+/// Vertical position of the upper edges of the servos.
 const TOP: f64 = 420.0;
+/// Width and height of a servo on the page.
 const BODY: (f64, f64) = (50.0, 92.0);
 /// Distance from a servo's middle at which its supply wires leave it.
 const LEAD: f64 = 14.0;
@@ -34,7 +37,7 @@ const LEAD: f64 = 14.0;
 const LEVELS: [f64; 2] = [530.0, 694.0];
 /// Heights of the horizontal parts of the ground wires of signals and board, below all other wires.
 const GROUND_LEVELS: [f64; 2] = [582.0, 748.0];
-/// Position at which the wire from the ground strip to the signal strip goes down.
+/// Horizontal position at which the wire from the ground strip to the signal strip runs down.
 const GROUND_WIRE_X: f64 = 622.0;
 const UNO: Uno = Uno {
     corner: (120.0, 776.0),
@@ -102,11 +105,12 @@ fn order(pins: [u8; 4]) -> [usize; 4] {
     order
 }
 
+/// Horizontal position of the middle of a servo; `index` counts the servos from left to right.
 fn middle(index: usize) -> f64 {
     FIRST + APART * index as f64
 }
 
-/// The wires of the servos, which are placed in this order, and of their signals to the board.
+/// The wires of the servos, and those of their signals to the board. `order` has the servos from left to right.
 fn servo_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
     let mut wires = Vec::new();
     for (index, servo) in order.into_iter().enumerate() {
@@ -169,7 +173,7 @@ fn board_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
     wires
 }
 
-/// A servo from above, with its names.
+/// A servo from above, with its name, its place in the robot and its pin.
 fn body(servo: usize, index: usize, pin: u8) -> Group {
     let x = middle(index);
     let colour = SERVO[servo];

@@ -1,8 +1,8 @@
 //! Wiring of an optional radio module that shares the board's serial line with the USB chip.
 //!
-//! Both drive pin D0, and both hold it high while they are silent; the USB chip does so through 1 kOhm, so a module
-//! that is wired directly to D0 overrides it, and uploads fail. With a diode the module can only pull D0 low. The
-//! module's input takes 3.3 V, which a divider makes.
+//! The module and the USB chip both drive pin D0, and both hold it high while they are silent; the USB chip does so
+//! through 1 kOhm, so a module that is wired directly to D0 overrides it, and uploads fail. With a diode the module
+//! can only pull D0 low. The module's input takes 3.3 V, which a divider makes.
 
 use svg::node::element::{Group, Polygon};
 
@@ -14,12 +14,15 @@ use crate::shared::ink::{
 
 /// Height of the panel, px.
 pub const HEIGHT: f64 = 246.0;
-/// Horizontal positions of the board's pins and the module's.
+/// Horizontal position of the board's pins.
 const BOARD: f64 = 120.0;
+/// Horizontal position of the module's pins.
 const MODULE: f64 = 500.0;
-/// Horizontal positions of the diode, the upper resistor and the divider's middle.
+/// Horizontal position of the diode.
 const DIODE: f64 = 300.0;
+/// Horizontal position of the divider's upper resistor.
 const UPPER: f64 = 260.0;
+/// Horizontal position of the divider's tap and lower resistor.
 const DIVIDED: f64 = 390.0;
 /// Rows: the board's pin, the module's pin, and the distance below the panel's top.
 const ROWS: [(&str, &str, f64); 4] = [

@@ -13,34 +13,38 @@ use crate::shared::ink::{
 
 /// Pixels between neighbouring ways of the upright strips.
 const PITCH: f64 = 22.0;
-/// Width of a strip, and the reach of a link beyond it, pixels.
+/// Width of a strip, pixels.
 const WIDE: f64 = 36.0;
+/// Reach of a link beyond its strip, pixels.
 const LINK: f64 = 11.0;
-/// Ways of the strip for ground that have links; two more are spare.
+/// Number of ways of the ground strip that have links; two more ways are spare.
 pub const GROUNDS: usize = 10;
+/// Number of all ways of the ground strip.
 const GROUND_WAYS: usize = 12;
-/// Ways of the strip for +5 V.
+/// Number of ways of the +5 V strip.
 pub const SUPPLIES: usize = 6;
-/// First holes for wires of the ground strip and of the +5 V strip: inner edge and height.
+/// First wire hole of the ground strip: x of the strip's inner edge, and y.
 const GROUND: (f64, f64) = (640.0, 160.0);
+/// First wire hole of the +5 V strip: x of the strip's inner edge, and y.
 const SUPPLY: (f64, f64) = (96.0, 259.0);
-/// The signal strip: position of its first way, distance between ways, and its upper and lower ends.
+/// The ways of the signal strip: x of the first one, and distance to the next.
 const SIGNALS: (f64, f64) = (265.0, 48.0);
+/// Heights of the upper and lower edges of the signal strip.
 const SIGNALS_AT: (f64, f64) = (597.0, 633.0);
 /// Distance from the middle of a way to the board's jumper in it, away from the strip's middle way.
 const JUMPER: f64 = 5.0;
 
-/// The hole of a way of the ground strip, from 0, for a wire.
+/// The wire hole of a way of the ground strip; ways count from 0.
 pub fn ground(way: usize) -> (f64, f64) {
     (GROUND.0, GROUND.1 + PITCH * way as f64)
 }
 
-/// The hole of a way of the strip for +5 V, from 0, for a wire.
+/// The wire hole of a way of the +5 V strip; ways count from 0.
 pub fn supply(way: usize) -> (f64, f64) {
     (SUPPLY.0, SUPPLY.1 + PITCH * way as f64)
 }
 
-/// Index of the way of the signal strip for the servo at this place from left to right. The middle way is for
+/// Index of a servo's way of the signal strip; `index` counts the servos from left to right. The middle way is for
 /// ground.
 const fn way_of_servo(index: usize) -> usize {
     if index < 2 { index } else { index + 1 }
@@ -49,11 +53,12 @@ const fn way_of_servo(index: usize) -> usize {
 /// Index of the ground way of the signal strip.
 const MIDDLE: usize = 2;
 
+/// Horizontal position of a way of the signal strip.
 fn signal_x(way: usize) -> f64 {
     SIGNALS.0 + SIGNALS.1 * way as f64
 }
 
-/// The hole of the signal strip for a servo's signal.
+/// The hole of the signal strip for a servo's signal; `index` counts the servos from left to right.
 pub fn servo(index: usize) -> (f64, f64) {
     (signal_x(way_of_servo(index)), SIGNALS_AT.0)
 }
@@ -63,7 +68,7 @@ pub fn signal_ground() -> (f64, f64) {
     (signal_x(MIDDLE), SIGNALS_AT.0)
 }
 
-/// The hole of the signal strip for a jumper to the board.
+/// The hole of the signal strip for a servo's jumper to the board; `index` counts the servos from left to right.
 pub fn board(index: usize) -> (f64, f64) {
     let outward = if index < 2 { -JUMPER } else { JUMPER };
     (signal_x(way_of_servo(index)) + outward, SIGNALS_AT.1)
@@ -74,7 +79,7 @@ pub fn board_ground() -> (f64, f64) {
     (signal_x(MIDDLE), SIGNALS_AT.1)
 }
 
-/// The links of both strips.
+/// The links of the ground strip and of the +5 V strip.
 pub fn links() -> Vec<Wire> {
     let link = |name: String, out: f64, from: (f64, f64)| {
         let (x, y) = from;
@@ -92,9 +97,11 @@ pub fn links() -> Vec<Wire> {
     grounds.chain(supplies).collect()
 }
 
-/// The legs of the resistors from the signals of the servos, left to right, to the middle way.
+/// The leads of the resistors from each servo's way of the signal strip to the ground way. `names` has the servos
+/// from left to right.
 pub fn resistors(names: [&str; 4]) -> Vec<Wire> {
     let resistor = |(index, name): (usize, &str)| {
+        // The leads of the outer resistors run below those of the inner ones, so that they do not cross.
         let (to_middle, inner) = match index {
             0 => (-5.0, false),
             1 => (-11.0, true),
@@ -111,7 +118,7 @@ pub fn resistors(names: [&str; 4]) -> Vec<Wire> {
     names.into_iter().enumerate().map(resistor).collect()
 }
 
-/// The bodies of the resistors.
+/// The bodies of the resistors at the signal strip.
 pub fn resistor_bodies() -> Group {
     let mut group = Group::new();
     for (way, low) in [(0, 35.0), (1, 17.0), (2, 17.0), (3, 35.0)] {
@@ -127,7 +134,7 @@ pub fn resistor_bodies() -> Group {
         .add(text_start("own legs", (point.0, point.1 + 16.0), 12.0))
 }
 
-/// A way: its brass tube and its number.
+/// Draws a way of a strip: its brass tube and its number.
 fn draw_brass_strip(group: Group, from: (f64, f64), to: (f64, f64), number: usize) -> Group {
     let middle = ((from.0 + to.0) / 2.0, (from.1 + to.1) / 2.0);
     group

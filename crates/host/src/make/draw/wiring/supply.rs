@@ -11,30 +11,38 @@ use crate::shared::ink::{DARK, RED, edged, line, rectangle, text_end, text_middl
 
 type Point = (f64, f64);
 
-/// The left edge of the battery, the heights of its contacts, and the left edge of its cells.
+/// The battery's left edge.
 const BATTERY: f64 = 560.0;
+/// Height of the battery's plus contact, and of the fuse, the switch and the single way after it.
 const PLUS: f64 = 40.0;
+/// Height of the battery's minus contact.
 const MINUS: f64 = 112.0;
+/// Heights of the contacts of the battery's balance plug.
 const BALANCE: [f64; 3] = [62.0, 76.0, 90.0];
+/// The left edge of the battery's cells.
 const CELLS: f64 = 600.0;
 /// The alarm's right edge.
 const ALARM: f64 = 500.0;
-/// Left and right contacts of the fuse, the switch and the single way after it.
+/// Horizontal positions of the fuse's left and right contacts.
 const FUSE_AT: [f64; 2] = [458.0, 518.0];
+/// Horizontal positions of the switch's left and right contacts.
 const SWITCH_AT: [f64; 2] = [362.0, 428.0];
+/// Horizontal positions of the left and right holes of the single way after the switch.
 const WAY: [f64; 2] = [286.0, 322.0];
 /// Distance from the middle of the single way to each of the two wires at its left hole.
 const WIRE_OFFSET: f64 = 5.0;
-/// The converter's edges, and the heights of its contacts.
+/// The converter's left and right edges.
 const CONVERTER: [f64; 2] = [130.0, 235.0];
+/// Height of the contact IN+ of the converter.
 const CONVERTER_IN_PLUS: f64 = PLUS - WIRE_OFFSET;
+/// Height of the contacts IN- and OUT- of the converter.
 const CONVERTER_MINUS: f64 = 104.0;
 /// The capacitor's horizontal position.
 const CAPACITOR: f64 = 150.0;
 /// Horizontal positions of the two wires that lead down to the round plug.
 const MARGINS: [f64; 2] = [20.0, 34.0];
 
-/// Ways of the ground strip for the parts of the supply, from 0.
+/// Parts of the supply, and the way of the ground strip for each, from 0.
 const GROUND_OF: [(&str, usize); 5] = [
     ("battery", 0),
     ("converter-in", 1),
@@ -46,6 +54,7 @@ const GROUND_OF: [(&str, usize); 5] = [
 /// The first way of the ground strip for a servo.
 pub const SERVOS: usize = GROUND_OF.len();
 
+/// The wire hole of the ground strip for a part of the supply.
 fn ground_way(name_of_part: &str) -> Point {
     let index = GROUND_OF.iter().find(|(name, _)| *name == name_of_part);
     ground(index.map_or(0, |(_, way)| *way))
@@ -154,7 +163,7 @@ pub fn wires(socket: Point) -> Vec<Wire> {
     wires
 }
 
-/// The ends of the round plug's wires.
+/// The terminals of the round plug, plus and minus.
 fn round_plug((x, y): Point) -> [Point; 2] {
     [(x - 40.0, y - 9.0), (x - 40.0, y + 9.0)]
 }
@@ -269,7 +278,7 @@ fn draw_alarm(group: Group) -> Group {
     group
 }
 
-/// Fuse, switch and the single way.
+/// Draws the fuse, the switch and the single way after it.
 fn draw_supply_line(group: Group) -> Group {
     let mut group = group;
     for ([left, right], fill) in [

@@ -9,9 +9,9 @@ pub enum Effect {
     Pop,
     Call(u32),
     Jump(u32),
-    /// Continues here or at the next instruction.
+    /// Continues at this address or at the next instruction.
     Branch(u32),
-    /// Continues at the next instruction or after it.
+    /// Executes or skips the next instruction.
     Skip,
     Return,
     /// An indirect jump or call: `ijmp`, `icall` and their extended forms.
@@ -28,10 +28,11 @@ pub enum Effect {
     AddToPointer(i16),
     /// The low half of a 16-bit subtraction from r29:r28: `subi r28`.
     SubtractLow(u8),
-    /// The high half: `sbci r29` or `sbc r29`.
+    /// The high half of a 16-bit subtraction from r29:r28: `sbci r29` or `sbc r29`.
     SubtractHigh(u8),
-    /// `ldi r28` and `ldi r29`.
+    /// r28 gets a constant: `ldi r28`.
     LoadLow(u8),
+    /// r29 gets a constant: `ldi r29`.
     LoadHigh(u8),
     /// r29:r28 gets another value.
     LosePointer,
@@ -43,16 +44,18 @@ pub enum Effect {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Instruction {
     pub effect: Effect,
-    /// Bytes: 2 or 4.
+    /// Length of the instruction, bytes: 2 or 4.
     pub size: u32,
 }
 
-/// I/O addresses of the stack pointer's halves, and their data addresses.
+/// I/O address of the stack pointer's low byte.
 const SPL: u16 = 0x3d;
+/// I/O address of the stack pointer's high byte.
 const SPH: u16 = 0x3e;
+/// Data addresses of the stack pointer's low and high bytes.
 const SP_DATA: [u16; 2] = [0x5d, 0x5e];
 
-/// Decodes the instruction at a byte address; `None` if flash ends there.
+/// Decodes the instruction at a byte address; `None` if flash ends before the instruction does.
 pub fn decode(flash: &[u8], address: u32) -> Option<Instruction> {
     let code = word(flash, address)?;
     let is_long = code & 0xfe0f == 0x9000 // lds
@@ -76,12 +79,14 @@ pub fn jump_target(flash: &[u8], address: u32) -> Option<u32> {
     }
 }
 
+/// Reads the word at a byte address; `None` if flash ends before the word does.
 fn word(flash: &[u8], address: u32) -> Option<u16> {
     let address = address as usize;
     let bytes = flash.get(address..address + 2)?;
     Some(u16::from_le_bytes([bytes[0], bytes[1]]))
 }
 
+/// The effect of the instruction with these words at a byte address; `second` is 0 if there is only one word.
 fn effect(code: u16, second: u16, address: u32) -> Effect {
     let register = code >> 4 & 0x1f;
     match code {

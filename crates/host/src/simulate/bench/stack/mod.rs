@@ -54,7 +54,7 @@ pub struct StackDepth {
 
 impl StackDepth {
     /// Computes an image's depths. A vector table is recognised by the `jmp` at
-    /// address 0; vectors that lead to avr-libc's `__bad_interrupt` are not in use.
+    /// address 0; vectors that jump to avr-libc's `__bad_interrupt` are not in use.
     ///
     /// # Errors
     /// See [`StackError`].

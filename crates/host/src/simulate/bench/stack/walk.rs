@@ -42,7 +42,8 @@ struct State {
     room: Option<u8>,
 }
 
-/// Shared prologues and epilogues (`tools/linker/src/frames.S`): bytes saved, by address.
+/// Shared prologues and epilogues (`tools/linker/src/frames.S`): the bytes that each saves or restores, by its
+/// address.
 struct Shared {
     save: HashMap<u32, i32>,
     restore: HashMap<u32, i32>,
@@ -85,7 +86,7 @@ pub struct Function {
     /// True if the function returns. Code after a call of a function that does not return is not
     /// part of the caller.
     pub returns: bool,
-    /// The byte address at which a handler enables other interrupts, if it does.
+    /// The byte address at which a handler enables other interrupts; `None` if it does not.
     pub lets_in: Option<u32>,
 }
 
@@ -113,6 +114,7 @@ impl<'a> Walk<'a> {
         Ok(function)
     }
 
+    /// Follows every path through the function at `entry`.
     fn walk(&mut self, entry: u32) -> Result<Function, StackError> {
         let mut worst = 0;
         let mut returns = false;
@@ -153,7 +155,7 @@ impl<'a> Walk<'a> {
                     };
                     state.depth += self.shared.save[&target] + room;
                     state.pointer = Pointer::Depth(state.depth);
-                    // Its own return address lies below the room that it makes.
+                    // The return address of the shared prologue lies below the room that the prologue makes.
                     worst = worst.max(state.depth + RETURN_ADDRESS);
                 }
                 Effect::Jump(target) if self.shared.restore.contains_key(&target) => {

@@ -1,4 +1,4 @@
-//! Tests with hand-made frames, and the figures computed from them.
+//! Tests of the figures that are computed from frames, with hand-made frames.
 
 use super::*;
 

@@ -1,6 +1,6 @@
 //! The steps of a calibration, in their order.
 
-/// A step of a calibration; the number is that of its servo, 0 to 3.
+/// A step of a calibration; the number is the index of its servo, 0 to 3.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Step {
     Begin,

@@ -215,7 +215,7 @@ fn a_scale_is_set_where_the_crank_points_and_its_middle_stays() {
     let expected = 10.0 * (1.0 + 0.5 / by).powi(4);
     let now = calibration::ask(&mut link).expect("it answers").servos[0];
     assert!((now.scale - expected).abs() < 0.03, "{now:?}");
-    // The pulse of the middle is as before: trim times scale.
+    // The neutral pulse is unchanged: its offset is trim times scale.
     assert!((now.trim * now.scale - 20.0).abs() < 0.2, "{now:?}");
 }
 

@@ -72,7 +72,7 @@ fn an_image_that_reaches_into_a_nanos_boot_section_is_refused() {
     assert!(words.starts_with(&needed), "{words}");
     assert!(words.ends_with("Nothing was written"), "{words}");
     assert_eq!(words, refused(Double::blank(), named(Model::Nano)));
-    // A newer Nano answers like a UNO, and copies of the UNO have the same USB chip.
+    // A newer Nano answers like a UNO, and clones of the UNO have the same USB chip as a Nano.
     let in_doubt = Target {
         may_be_nano: true,
         ..any
