@@ -1,7 +1,7 @@
 // Runs the simulation in real time, or slower where the page cannot keep up.
 
 /** Longest simulated time per picture, ms: what a hidden or slow page misses beyond this is skipped. */
-const MOST = 100;
+const MAX_CATCH_UP_MS = 100;
 /** Slice of simulated time, ms; promises are settled between two slices. */
 const PART = 4;
 /** CPU time that the simulation may take for a picture, ms; if it needs more, it falls behind real time. */
@@ -11,7 +11,7 @@ export function run(advance: (ms: number) => void, draw: () => void): void {
   let before: number | null = null;
   let failed = false;
   const frame = async (now: number) => {
-    let left = before === null ? 0 : Math.min(MOST, Math.max(0, now - before));
+    let left = before === null ? 0 : Math.min(MAX_CATCH_UP_MS, Math.max(0, now - before));
     before = now;
     const start = performance.now();
     try {

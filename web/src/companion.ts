@@ -2,7 +2,7 @@
 import { isRefused, type Floor, type Frame, Robot } from './robot';
 
 /** Frames of 20 ms from power-on until the robot stands. */
-const WAKES = 200;
+const WAKE_FRAMES = 200;
 
 export class Companion {
   frame: Frame | null = null;
@@ -25,7 +25,7 @@ export class Companion {
     robot.setServos(servos);
     robot.runCore();
     const companion = new Companion(robot, volts);
-    for (let n = 0; n < WAKES; n++) companion.step();
+    for (let n = 0; n < WAKE_FRAMES; n++) companion.step();
     robot.restart();
     companion.step();
     return companion;

@@ -3,7 +3,7 @@ import { Address, OWN, partsOf } from './address';
 import { run } from './clock';
 import { files } from './files';
 import { kept } from './kept';
-import { BluetoothLink, noBluetooth, ON_IPHONE } from './link/bluetooth-link';
+import { BluetoothLink, bluetoothProblem, ON_IPHONE } from './link/bluetooth-link';
 import type { Link } from './link/link';
 import { hasSerial, NO_SERIAL, PortLink } from './link/port-link';
 import { keepOffline } from './offline';
@@ -17,7 +17,7 @@ import { Calibrate } from './view/calibrate';
 import { element } from './view/canvas';
 import { Choice } from './view/choice';
 import { download } from './view/download';
-import { Drive, short } from './view/drive';
+import { Drive, formatDisplacement } from './view/drive';
 import { FitView } from './view/fit';
 import { FlashView } from './view/flash';
 import { Floor } from './view/floor';
@@ -250,7 +250,7 @@ async function start(): Promise<void> {
       element('where').parentElement!.dataset.room = whereOf(link.name, { version, robot: { name, hash } }, hash);
       connect.textContent = session.isReal ? 'Back to the simulation' : 'Connect a board…';
       connect.disabled = !session.isReal && !hasSerial();
-      radio.hidden = session.isReal || noBluetooth() !== null;
+      radio.hidden = session.isReal || bluetoothProblem() !== null;
       element<HTMLButtonElement>('reset').disabled = link.kind === 'radio';
       flash.update();
       measure?.link(session.isReal);
@@ -273,7 +273,7 @@ async function start(): Promise<void> {
     };
     alarm.write();
     put('doing', gait || '–');
-    put('age', `${session.age.toFixed(1)} s ago`);
+    put('age', `${session.secondsSinceLine.toFixed(1)} s ago`);
     if (last) {
       const { x, y, heading } = last.place;
       // Avoids -0.
@@ -283,8 +283,8 @@ async function start(): Promise<void> {
       put('heading', `${round(heading, 1)}°`);
     }
     const [measured, prediction] = [session.measured(), drive.prediction(gait)];
-    put('cycle', short(measured) || '–');
-    put('predicted', short(prediction) || '–');
+    put('cycle', formatDisplacement(measured) || '–');
+    put('predicted', formatDisplacement(prediction) || '–');
     // Rigid legs without play do not lag.
     const sprung = lags(session.floor);
     for (const box of document.querySelectorAll<HTMLElement>('.sprung')) box.hidden = !sprung;

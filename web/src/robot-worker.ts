@@ -5,13 +5,13 @@ import { type EditedGait, type Edits, type Four, isRefused, load, type OnFloor, 
 
 let robot: Robot;
 /** The robot.toml of the robot that is loaded. */
-let known = '';
+let loadedToml = '';
 
 /** Loads a robot, its floor and its servos; returns false if the robot is refused. */
-function take({ toml, floor, servos }: OnFloor): boolean {
-  if (toml !== known) {
+function loadRobot({ toml, floor, servos }: OnFloor): boolean {
+  if (toml !== loadedToml) {
     if (isRefused(robot.read(toml))) return false;
-    known = toml;
+    loadedToml = toml;
   }
   robot.setFloor(floor);
   robot.setServos(servos);
@@ -19,10 +19,10 @@ function take({ toml, floor, servos }: OnFloor): boolean {
 }
 
 /** Loads a robot and returns the scene of its neutral pose; null if the robot is refused. */
-function neutral(toml: string): Scene | null {
+function neutralScene(toml: string): Scene | null {
   const read = robot.read(toml);
   if (isRefused(read)) return null;
-  known = toml;
+  loadedToml = toml;
   return robot.pose(read.servos.map(({ neutral }) => neutral) as Four<number>, 1)?.scene ?? null;
 }
 
@@ -31,13 +31,13 @@ const functions = {
     robot = load(module);
   },
 
-  predict: (of: OnFloor & { gait: number }) => (take(of) ? robot.predict(of.gait) : null),
+  predict: (of: OnFloor & { gait: number }) => (loadRobot(of) ? robot.predict(of.gait) : null),
 
   /** Tries an edited gait; null for a refused robot or a drawn line without length. */
-  trial: (of: OnFloor & { made: EditedGait }) => (take(of) ? robot.trial(of.made) : null),
+  trial: (of: OnFloor & { made: EditedGait }) => (loadRobot(of) ? robot.trial(of.made) : null),
 
   /** The path of one round of a routine; null if the robot is refused or has no such routine. */
-  round: (of: OnFloor & { routine: string }) => (take(of) ? robot.round(of.routine) : null),
+  round: (of: OnFloor & { routine: string }) => (loadRobot(of) ? robot.round(of.routine) : null),
 
   /**
    * Tries other lengths, and draws the neutral pose if they are accepted. `isLast` is true at the end of a drag: if
@@ -47,7 +47,7 @@ const functions = {
   lengths({ toml, edits, isLast, keys }: { toml: string; edits: Edits; isLast: boolean; keys: string[] }) {
     const tried = Robot.lengths(toml, edits, isLast);
     const range = keys.length === 0 ? null : Robot.lengthRange(toml, keys);
-    return { ...tried, edits, scene: tried.refusal ? null : neutral(tried.text), isLast, range };
+    return { ...tried, edits, scene: tried.refusal ? null : neutralScene(tried.text), isLast, range };
   },
 };
 

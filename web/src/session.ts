@@ -17,7 +17,7 @@ import {
   type Refused,
   type Robot,
 } from './robot';
-import { type Banner, banner, type Status, status, reportedPose } from './status';
+import { type Banner, parseBanner, type Status, parseStatus, reportedPose } from './status';
 import { type Cause, messageOf } from './trouble';
 import { SimulatedBoard } from './uno/board';
 import { type Measured, WalkedPath } from './walked';
@@ -26,19 +26,19 @@ import { DONE, GAITS, WORDS } from './words';
 /** Number of frames of 20 ms from one reported pose of a board to the next; a radio at 9600 baud carries no more. */
 const WATCH = { usb: 2, radio: 10, simulated: 1 };
 /** Time from a reset within which this firmware sends its banner, ms. */
-const GREETS = 2500;
+const BANNER_TIMEOUT_MS = 2500;
 /**
  * Time within which a board that was not reset answers, ms, and how often it is asked: the board finds the port's
  * baud rate after at most five lines, and a radio may lose some.
  */
-const ANSWERS = 500;
-const ASKS = { usb: 5, radio: 12, simulated: 1 };
+const ANSWER_TIMEOUT_MS = 500;
+const MAX_ATTEMPTS = { usb: 5, radio: 12, simulated: 1 };
 /** Time that the answer to `status` may take before `status` is sent again, ms. */
 const STATUS_ANSWERS = 1000;
 /** Time a board gets to stop before the port is closed, ms. */
-const STOPS = 1000;
+const STOP_TIMEOUT_MS = 1000;
 /** Time after a reset within which `boot` has acted (three seconds), ms. */
-const BOOTS = 4000;
+const BOOT_TIMEOUT_MS = 4000;
 /** The firmware's pace after a reset, percent. */
 const FULL_PACE = 100;
 const FRAME_SECONDS = 0.02;
@@ -122,7 +122,7 @@ export class Session {
   banners = 0;
   /** The firmware, which is the same for every robot. */
   private code: Uint8Array | null = null;
-  private set: Floor | null = null;
+  private floorSetting: Floor | null = null;
   private bootLoader: string | null = null;
   private readonly path = new WalkedPath();
   /**
@@ -156,7 +156,7 @@ export class Session {
       const [toml, predictions, code] = await Promise.all([files.toml(name), files.predictions(name), this.code ?? files.code().then(imageOf)]);
       if (choice !== this.choices) return;
       this.code = code;
-      const refused = this.take(toml, null, [toml, predictions]);
+      const refused = this.loadToml(toml, null, [toml, predictions]);
       if (refused) throw new Error(`${name}.toml: ${refused.refused}`);
       await this.begin(false);
       this.file = name;
@@ -171,7 +171,7 @@ export class Session {
 
   /** Loads a changed robot.toml: the simulated UNO restarts with it and keeps its saved settings. */
   async change(toml: string): Promise<Refused | null> {
-    const refused = this.take(toml);
+    const refused = this.loadToml(toml);
     if (refused) return refused;
     await this.begin(true);
     this.keep();
@@ -183,14 +183,14 @@ export class Session {
     if (original !== this.original) return false;
     this.setServos(servos);
     this.setSupply(volts);
-    if (this.take(toml, floor)) return false;
+    if (this.loadToml(toml, floor)) return false;
     await this.begin(true);
     this.keep();
     return true;
   }
 
   private keep(): void {
-    const { file, original, toml, set: floor, servos, volts } = this;
+    const { file, original, toml, floorSetting: floor, servos, volts } = this;
     if (file !== '') kept.put({ file, original, toml, floor, servos, volts });
   }
 
@@ -199,10 +199,10 @@ export class Session {
     await this.change(this.original);
   }
 
-  private take(toml: string, set = this.set, file: [string, Predictions | null] = [this.original, this.predictions]): Refused | null {
+  private loadToml(toml: string, set = this.floorSetting, file: [string, Predictions | null] = [this.original, this.predictions]): Refused | null {
     const answer = this.robot.read(toml);
     if (isRefused(answer)) return answer;
-    [this.toml, this.set] = [toml, set];
+    [this.toml, this.floorSetting] = [toml, set];
     [this.original, this.predictions] = file;
     this.description = answer;
     this.section = this.robot.section();
@@ -253,7 +253,7 @@ export class Session {
   }
 
   /** Time since the robot's last line, s. */
-  get age(): number {
+  get secondsSinceLine(): number {
     return (performance.now() - this.lastLineAt) / 1000;
   }
 
@@ -290,9 +290,9 @@ export class Session {
     this.listener.trouble('port', null);
     // Opening a port on USB has reset the board. Bytes sent before its banner would go to the boot loader.
     const isRadio = link.kind === 'radio';
-    const greeted = !isRadio && (await this.greeting());
-    for (let n = 0; !greeted && this.boardBanner === undefined && n < ASKS[link.kind]; n++) {
-      if (this.link === link && (await this.replies())) this.found('unknown');
+    const hasGreeted = !isRadio && (await this.greeting());
+    for (let n = 0; !hasGreeted && this.boardBanner === undefined && n < MAX_ATTEMPTS[link.kind]; n++) {
+      if (this.link === link && (await this.isAnswering())) this.setBoardBanner('unknown');
     }
     if (this.link !== link) return false;
     if (this.boardBanner) await this.watch();
@@ -302,7 +302,7 @@ export class Session {
   }
 
   private silentModule(link: Link): void {
-    this.found(null);
+    this.setBoardBanner(null);
     this.listener.trouble('board', `The module is connected, but no robot answers from the ${link.name}: is its TXD on D0, and is the robot switched on?`);
   }
 
@@ -317,9 +317,9 @@ export class Session {
     const message = `The ${link.name} is out of reach. A robot that was driven stops by itself; the page connects again as soon as it can.`;
     this.listener.trouble('port', isInReach ? null : message);
     if (!isInReach) return;
-    for (let n = 0; n < ASKS.radio && this.link === link; n++) {
+    for (let n = 0; n < MAX_ATTEMPTS.radio && this.link === link; n++) {
       if ((await this.status()) === null) continue;
-      if (!this.boardBanner) this.found('unknown');
+      if (!this.boardBanner) this.setBoardBanner('unknown');
       this.listener.trouble('board', null);
       return this.watch();
     }
@@ -328,12 +328,12 @@ export class Session {
   /** Waits for the banner of a restarted board; returns true if it came in time. */
   async greeting(): Promise<boolean> {
     const greeted = new Promise<boolean>((yes) => (this.onBanner = () => yes(true)));
-    return Promise.race([greeted, this.link.wait(GREETS).then(() => false)]);
+    return Promise.race([greeted, this.link.wait(BANNER_TIMEOUT_MS).then(() => false)]);
   }
 
   /** Returns true if this firmware answers `status`: not every port resets its board, so there may be no banner. */
-  private async replies(): Promise<boolean> {
-    const answer = await this.dialogue.ask(WORDS.status, true, ANSWERS).catch(() => null);
+  private async isAnswering(): Promise<boolean> {
+    const answer = await this.dialogue.ask(WORDS.status, true, ANSWER_TIMEOUT_MS).catch(() => null);
     return answer?.ok ?? false;
   }
 
@@ -351,7 +351,7 @@ export class Session {
       if (this.link === link) this.listen();
     }
     if (this.link !== link) return;
-    this.found(null);
+    this.setBoardBanner(null);
     this.listener.trouble('board', message);
   }
 
@@ -389,7 +389,7 @@ export class Session {
   }
 
   /** Restores the robot's own `deadman` if the robot neither walks nor is about to walk. */
-  private rests(): void {
+  private restoreDeadmanIfIdle(): void {
     if (this.drives === 0 && !this.walksAlone) this.deadman.end();
   }
 
@@ -408,7 +408,7 @@ export class Session {
     if (!this.isReal || !this.boardBanner) return true;
     const { link, dialogue } = this;
     const answer = dialogue.ask(WORDS.stop).catch(() => null);
-    return Promise.race([answer, link.wait(STOPS)]).then(Boolean);
+    return Promise.race([answer, link.wait(STOP_TIMEOUT_MS)]).then(Boolean);
   }
 
   private async attach(link: Link): Promise<void> {
@@ -430,7 +430,7 @@ export class Session {
       received: (line) => this.received(line),
       arrived: (line) => {
         this.lastLineAt = performance.now();
-        const read = status(line);
+        const read = parseStatus(line);
         if (read) this.state(read);
       },
       silent: (isSilent) => this.listener.silent(isSilent),
@@ -455,11 +455,11 @@ export class Session {
     else if (word.startsWith(`${pose} `)) this.doing(pose);
     else if (word.startsWith(`${speed} `)) this.setPace(Number(word.slice(speed.length)));
     else if (line.startsWith('# boot: ')) this.doing(line.slice('# boot: '.length).replaceAll('-', ' '));
-    else if (line.startsWith(GREETING)) this.greeted(line);
+    else if (line.startsWith(GREETING)) this.handleBanner(line);
     else if (line.startsWith('# fault') || line === DONE) this.doing(stop);
   }
 
-  private greeted(line: string): void {
+  private handleBanner(line: string): void {
     const { dialogue } = this;
     const number = ++this.banners;
     this.doing('stand');
@@ -467,11 +467,11 @@ export class Session {
     this.isWatching = false;
     this.deadman.forget();
     this.listener.trouble('board', null);
-    this.found(banner(line) ?? 'unknown');
+    this.setBoardBanner(parseBanner(line) ?? 'unknown');
     this.onBanner();
     // A byte would cancel `boot`.
     this.mayAsk = false;
-    void this.link.wait(BOOTS).then(() => {
+    void this.link.wait(BOOT_TIMEOUT_MS).then(() => {
       // The board may have restarted meanwhile, or the boot loader may use the line.
       if (this.banners !== number || dialogue.isClosed) return;
       this.mayAsk = true;
@@ -479,7 +479,7 @@ export class Session {
     });
   }
 
-  private found(banner: BoardBanner): void {
+  private setBoardBanner(banner: BoardBanner): void {
     this.boardBanner = banner;
     this.listener.found(banner);
   }
@@ -493,7 +493,7 @@ export class Session {
 
   private doing(gait: string): void {
     this.gait = gait;
-    this.rests();
+    this.restoreDeadmanIfIdle();
     this.path.clear();
     this.listener.doing(gait);
   }
@@ -530,14 +530,14 @@ export class Session {
     } finally {
       if (isDrive) {
         this.drives -= 1;
-        this.rests();
+        this.restoreDeadmanIfIdle();
       }
     }
   }
 
   async status(): Promise<Status | null> {
     const answer = await this.ask(WORDS.status, true, STATUS_ANSWERS);
-    return answer && status(answer.text);
+    return answer && parseStatus(answer.text);
   }
 
   /** Takes the robot's state as soon as its line is read: taken later, it could overwrite a newer one. */
@@ -609,12 +609,12 @@ export class Session {
     const greeted = await this.greeting();
     if (this.link !== link) return null;
     if (!greeted) {
-      this.found(null);
+      this.setBoardBanner(null);
       this.listener.trouble('board', `What was written to the ${link.name} is not this firmware: it sends no banner.`);
       return 'it sends no banner of this firmware';
     }
-    const found = isBanner(this.boardBanner) ? this.boardBanner.robot?.hash : null;
-    return hash !== null && found !== hash ? 'but it does not say that it has this robot: write firmware and robot' : null;
+    const boardHash = isBanner(this.boardBanner) ? this.boardBanner.robot?.hash : null;
+    return hash !== null && boardHash !== hash ? 'but it does not say that it has this robot: write firmware and robot' : null;
   }
 
   private get simulated(): Simulated | null {
@@ -639,17 +639,17 @@ export class Session {
 
   private widths(widths: Four<number>): void {
     const frame = this.robot.pulses(widths);
-    if (frame) this.moved(frame, widths, FRAME_SECONDS);
+    if (frame) this.handleFrame(frame, widths, FRAME_SECONDS);
   }
 
   private pose(angles: Four<number>): void {
     const frames = WATCH[this.link.kind];
     const frame = this.robot.pose(angles, frames);
     this.clock += FRAME_SECONDS * frames;
-    if (frame) this.moved(frame, null, FRAME_SECONDS * frames);
+    if (frame) this.handleFrame(frame, null, FRAME_SECONDS * frames);
   }
 
-  private moved(frame: Frame, widths: Four<number> | null, seconds: number): void {
+  private handleFrame(frame: Frame, widths: Four<number> | null, seconds: number): void {
     this.last = frame;
     this.path.add(frame, seconds);
     this.listener.frame(frame, widths, seconds);
@@ -667,7 +667,7 @@ export class Session {
    * The predictions that came with the page; null unless the robot, its floor and its servos are those of the file.
    */
   get predicted(): Predictions | null {
-    return this.toml === this.original && this.set === null && this.servos === 'own' ? this.predictions : null;
+    return this.toml === this.original && this.floorSetting === null && this.servos === 'own' ? this.predictions : null;
   }
 
   /** Puts the robot back to its start on the floor. */
@@ -678,12 +678,12 @@ export class Session {
 
   /** Floor, mass, feet and leg drive: as set in the page, else as in robot.toml. */
   get floor(): Floor {
-    return this.set ?? this.description.floor;
+    return this.floorSetting ?? this.description.floor;
   }
 
   /** Sets floor, mass, feet and leg drive; null restores the values of robot.toml. */
   setFloor(floor: Floor | null): void {
-    this.set = floor;
+    this.floorSetting = floor;
     this.robot.setFloor(this.floor);
     this.keep();
   }

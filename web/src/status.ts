@@ -9,7 +9,7 @@ export interface Banner {
 }
 
 /** Reads a banner; null for any other line, also for the banner of an old firmware that had its robot compiled in. */
-export function banner(line: string): Banner | null {
+export function parseBanner(line: string): Banner | null {
   const [, version, name, hash] = /^# lizard (\S+) (?:robot (\S+) ([0-9a-f]{8})|without a robot),/.exec(line) ?? [];
   if (version === undefined) return null;
   return { version, robot: name === undefined || hash === undefined ? null : { name, hash } };
@@ -42,16 +42,16 @@ export interface Status {
   speed: number | null;
 }
 
-function four(text: string | undefined): Four<number> | null {
+function parseFourNumbers(text: string | undefined): Four<number> | null {
   const numbers = (text ?? '').split(',').map(Number);
   return numbers.length === 4 && numbers.every(Number.isFinite) ? (numbers as Four<number>) : null;
 }
 
 /** Reads an answer `ok gait=...`; null for any other line. */
-export function status(line: string): Status | null {
+export function parseStatus(line: string): Status | null {
   if (!line.startsWith('ok gait=')) return null;
   const pairs = new Map(line.slice(3).split(' ').map((pair) => pair.split('=') as [string, string]));
-  const pose = four(pairs.get('pose'));
+  const pose = parseFourNumbers(pairs.get('pose'));
   if (!pose && pairs.get('fault') !== 'robot') return null;
   const number = (key: string): number | null => (pairs.has(key) ? parseFloat(pairs.get(key)!) : null);
   return {
@@ -74,5 +74,5 @@ export function status(line: string): Status | null {
 /** Reads the pose of a line `# t=<frame> pose=...`. */
 export function reportedPose(line: string): Four<number> | null {
   const match = /^# t=\d+ pose=(\S+)/.exec(line);
-  return match ? four(match[1]) : null;
+  return match ? parseFourNumbers(match[1]) : null;
 }

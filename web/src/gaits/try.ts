@@ -3,7 +3,7 @@ import type { EditedGait, Refused } from '../robot';
 import type { Session } from '../session';
 
 /** Time from a restart until the robot stands, ms of the simulation. */
-const WAKES = 2500;
+const WAKE_MS = 2500;
 
 /** Puts the gait into the session's robot. A board on USB gets the gait only when the robot is written to it. */
 export async function takeGait(session: Session, made: EditedGait): Promise<Refused | null> {
@@ -30,6 +30,6 @@ export async function wakeWith(session: Session, made: EditedGait): Promise<Refu
   }
   const refused = await takeGait(session, made);
   if (refused) return refused;
-  await session.link.wait(WAKES);
+  await session.link.wait(WAKE_MS);
   return null;
 }

@@ -26,7 +26,7 @@ interface Bluetooth {
 }
 
 /** The serial services of the HM-10 and of Nordic's modules, each with its characteristics to and from the module. */
-const LINES = [
+const SERIAL_SERVICES = [
   { service: 0xffe0, to: 0xffe1, from: 0xffe1 },
   {
     service: '6e400001-b5a3-f393-e0a9-e50e24dcca9e',
@@ -51,7 +51,7 @@ export const ON_IPHONE =
   isApple && !bluetooth() ? 'On an iPhone or iPad neither Safari nor Chrome can reach a robot. The browser Bluefy can, by a Bluetooth LE module.' : null;
 
 /** Returns the reason why this browser cannot reach a Bluetooth module; null if it can. */
-export function noBluetooth(): string | null {
+export function bluetoothProblem(): string | null {
   if (bluetooth()) return null;
   return (
     ON_IPHONE ??
@@ -64,12 +64,12 @@ export class BluetoothLink implements Link {
   onBytes: (bytes: Uint8Array) => void = () => {};
   onGone: (why: string) => void = () => {};
   onReach: (isInReach: boolean) => void = () => {};
-  private to: Characteristic | null = null;
+  private writeCharacteristic: Characteristic | null = null;
   private packets: Promise<void> = Promise.resolve();
   private isClosing = false;
 
   private constructor(private readonly device: Device) {
-    device.addEventListener('gattserverdisconnected', () => void this.lost());
+    device.addEventListener('gattserverdisconnected', () => void this.reconnect());
   }
 
   get name(): string {
@@ -79,13 +79,13 @@ export class BluetoothLink implements Link {
   /** Lets the user pick a module and connects to it; null if the user picks none. Throws an error for the user. */
   static async open(): Promise<BluetoothLink | null> {
     const radio = bluetooth();
-    if (!radio) throw new Error(noBluetooth() ?? '');
+    if (!radio) throw new Error(bluetoothProblem() ?? '');
     // False without a radio, but also if the page may not use it.
     const isThere = await radio.getAvailability();
-    const filters = [...LINES.map(({ service }) => ({ services: [service] })), ...NAMES.map((namePrefix) => ({ namePrefix }))];
+    const filters = [...SERIAL_SERVICES.map(({ service }) => ({ services: [service] })), ...NAMES.map((namePrefix) => ({ namePrefix }))];
     let device: Device;
     try {
-      device = await radio.requestDevice({ filters, optionalServices: LINES.map(({ service }) => service) });
+      device = await radio.requestDevice({ filters, optionalServices: SERIAL_SERVICES.map(({ service }) => service) });
     } catch (error) {
       // The error of a chooser closed without a choice. Without the system's permission a browser gives the same
       // error with another message.
@@ -101,7 +101,7 @@ export class BluetoothLink implements Link {
 
   private async reach(): Promise<void> {
     const server = await this.device.gatt.connect();
-    for (const line of LINES) {
+    for (const line of SERIAL_SERVICES) {
       const service = await server.getPrimaryService(line.service).catch(() => null);
       if (!service) continue;
       const from = await service.getCharacteristic(line.from);
@@ -110,19 +110,19 @@ export class BluetoothLink implements Link {
         if (value) this.onBytes(new Uint8Array(value.buffer, value.byteOffset, value.byteLength).slice());
       });
       await from.startNotifications();
-      this.to = line.to === line.from ? from : await service.getCharacteristic(line.to);
+      this.writeCharacteristic = line.to === line.from ? from : await service.getCharacteristic(line.to);
       return;
     }
     this.device.gatt.disconnect();
     throw new Error(`${this.device.name ?? 'The module'} has no serial line: neither the service FFE0 of an HM-10 nor Nordic's.`);
   }
 
-  private async lost(): Promise<void> {
+  private async reconnect(): Promise<void> {
     // A module that was never reached is reported by `open`.
-    if (this.isClosing || !this.to) return;
-    this.to = null;
+    if (this.isClosing || !this.writeCharacteristic) return;
+    this.writeCharacteristic = null;
     this.onReach(false);
-    while (!this.isClosing && !this.to) {
+    while (!this.isClosing && !this.writeCharacteristic) {
       await sleep(RETRY);
       await this.reach().catch(() => {});
     }
@@ -135,7 +135,7 @@ export class BluetoothLink implements Link {
 
   private async send(bytes: Uint8Array): Promise<void> {
     for (let at = 0; at < bytes.length; at += PACKET) {
-      const { to } = this;
+      const to = this.writeCharacteristic;
       if (!to) throw new Error(`the ${this.name} is out of reach`);
       const packet = bytes.slice(at, at + PACKET);
       await (to.properties.writeWithoutResponse ? to.writeValueWithoutResponse(packet) : to.writeValueWithResponse(packet));

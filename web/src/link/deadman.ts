@@ -7,7 +7,7 @@ import type { Dialogue } from './dialogue';
  * `deadman` while a user drives, ms. No user chooses this odd number, so a robot that has it got it from a page that
  * was closed.
  */
-const DRIVEN = 901;
+const DRIVING_DEADMAN_MS = 901;
 /** Number of lines that the page sends within the `deadman` time: two of three may be lost. */
 const LINES = 3;
 
@@ -25,22 +25,22 @@ export class Deadman {
 
   /** Sets `deadman` before a gait; resolves to false if the robot does not confirm it: then no gait may start. */
   begin(): Promise<boolean> {
-    return (this.set ??= this.confirmed());
+    return (this.set ??= this.setAndConfirm());
   }
 
-  private async confirmed(): Promise<boolean> {
+  private async setAndConfirm(): Promise<boolean> {
     if (this.own === null) await this.read();
-    const ms = this.own ? Math.min(this.own, DRIVEN) : DRIVEN;
+    const ms = this.own ? Math.min(this.own, DRIVING_DEADMAN_MS) : DRIVING_DEADMAN_MS;
     const line = `${WORDS.deadman} ${ms}`;
-    const isSet = (await this.quietly(line))?.ok ?? false;
+    const isSet = (await this.askQuietly(line))?.ok ?? false;
     if (isSet && this.isSet) this.dialogue.keepAlive(line, Math.floor(ms / LINES));
     return isSet;
   }
 
   private async read(): Promise<void> {
-    const notes = (await this.quietly(WORDS.cal))?.notes ?? [];
+    const notes = (await this.askQuietly(WORDS.cal))?.notes ?? [];
     const [, ms] = notes.map((line) => /^# deadman (\d+)$/.exec(line)).find(Boolean) ?? [];
-    if (ms !== undefined) this.own = Number(ms) === DRIVEN ? 0 : Number(ms);
+    if (ms !== undefined) this.own = Number(ms) === DRIVING_DEADMAN_MS ? 0 : Number(ms);
   }
 
   /** Notes a user's line, accepted if `isOk`, that changes the robot's own setting. */
@@ -61,7 +61,7 @@ export class Deadman {
     this.letGo();
     if (!this.isSet) return;
     this.set = null;
-    if (this.own !== null) void this.quietly(`${WORDS.deadman} ${this.own}`);
+    if (this.own !== null) void this.askQuietly(`${WORDS.deadman} ${this.own}`);
   }
 
   /** Resets this state after a restart of the robot. */
@@ -71,7 +71,7 @@ export class Deadman {
     this.own = null;
   }
 
-  private quietly(line: string) {
+  private askQuietly(line: string) {
     return this.dialogue.ask(line, true).catch(() => null);
   }
 }

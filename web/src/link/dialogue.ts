@@ -72,7 +72,7 @@ const wordOf = (line: string) => line.trim().toLowerCase().split(/\s/)[0];
 /**
  * True if a line that begins with `ok` or `err` can be the answer to `line`, and not a late answer to another line.
  */
-function fits(answer: string, line: string): boolean {
+function isAnswerTo(answer: string, line: string): boolean {
   const word = wordOf(line);
   const expected = { [WORDS.status]: 'gait=', '?': WORDS.help }[word] ?? word;
   return answer.startsWith('err') || answer.startsWith(`ok ${expected}`);
@@ -249,7 +249,7 @@ export class Dialogue {
       this.finishStop(stop, { ok: line.startsWith('ok'), text: line, notes: [] });
       return;
     }
-    const isFit = question !== null && fits(line, question.line);
+    const isFit = question !== null && isAnswerTo(line, question.line);
     const isQuiet = isFit ? question.quiet : line === this.repeatedAnswer;
     if (!isQuiet) this.listener.received(line);
     if (!isFit) return;

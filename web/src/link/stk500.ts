@@ -77,7 +77,7 @@ class Loader {
   }
 
   /** Receives `count` bytes. Throws an error for the user. */
-  async take(count: number, timeout: number): Promise<number[]> {
+  async receive(count: number, timeout: number): Promise<number[]> {
     let late = false;
     void this.link.wait(timeout).then(() => {
       late = true;
@@ -93,7 +93,7 @@ class Loader {
   /** Sends a command and returns its answer of `answer` bytes. */
   async command(bytes: number[], answer = 0, timeout = TIMEOUT): Promise<number[]> {
     await this.link.write(Uint8Array.from([...bytes, END]));
-    const got = await this.take(answer + 2, timeout);
+    const got = await this.receive(answer + 2, timeout);
     if (got[0] !== IN_SYNC || got[got.length - 1] !== OK) throw new Error('the board answers out of step');
     return got.slice(1, -1);
   }
@@ -143,7 +143,7 @@ export interface Piece {
 }
 
 /** Returns the bytes in whole pages; the last page is filled up with 0xff, as in erased flash. */
-function inPages({ bytes }: Piece): Uint8Array {
+function padToPages({ bytes }: Piece): Uint8Array {
   const pages = new Uint8Array(Math.ceil(bytes.length / PAGE) * PAGE).fill(0xff);
   pages.set(bytes);
   return pages;
@@ -159,7 +159,7 @@ export async function flash(link: Link, piece: Piece, progress: Progress, requir
   const goTo = (address: number) => loader.command([LOAD_ADDRESS, (address >> 1) & 0xff, address >> 9]);
   /** Returns the address of the first byte of the flash that differs from `wanted`; -1 if none does. */
   const firstDifference = async (wanted: Piece, what: 'comparing' | 'verifying') => {
-    const bytes = inPages(wanted);
+    const bytes = padToPages(wanted);
     for (let at = 0; at < bytes.length; at += PAGE) {
       await goTo(wanted.at + at);
       const read = await loader.command([READ_PAGE, 0, PAGE, FLASH], PAGE);
@@ -174,7 +174,7 @@ export async function flash(link: Link, piece: Piece, progress: Progress, requir
     await loader.command([LEAVE]);
     throw new FirmwareMismatch('the firmware of the board is another one, in which this robot may not fit: write firmware and robot');
   }
-  const image = inPages(piece);
+  const image = padToPages(piece);
   const write = async (at: number, page: Uint8Array) => {
     await goTo(piece.at + at);
     await loader.command([PROGRAM_PAGE, 0, PAGE, FLASH, ...page]);

@@ -20,7 +20,7 @@ function verdict({ agrees, differs }: Part): string {
 }
 
 /** The column headings of a gait's table. MuJoCo's column is there only for some robots at full speed. */
-export const heads = ({ mujoco }: Report) => ['a cycle', 'measured', 'error', 'predicted', '', 'sd', ...(mujoco ? ['MuJoCo'] : [])];
+export const columnHeadings = ({ mujoco }: Report) => ['a cycle', 'measured', 'error', 'predicted', '', 'sd', ...(mujoco ? ['MuJoCo'] : [])];
 
 export const titleOf = ({ gait, speed, cycles }: Report) => `${gait}, ${speed} %, ${cycles} cycles`;
 
@@ -28,8 +28,8 @@ export const titleOf = ({ gait, speed, cycles }: Report) => `${gait}, ${speed} %
 export function rows(report: Report): string[][] {
   return PARTS.map((name, i) => {
     const part = report[name];
-    const judge = report.mujoco ? [signed(report.mujoco[i])] : [];
-    return [PART_NAMES[i] ?? '', signed(part.mean), part.error.toFixed(2), signed(part.predicted), verdict(part), part.sd.toFixed(2), ...judge];
+    const mujocoCell = report.mujoco ? [signed(report.mujoco[i])] : [];
+    return [PART_NAMES[i] ?? '', signed(part.mean), part.error.toFixed(2), signed(part.predicted), verdict(part), part.sd.toFixed(2), ...mujocoCell];
   });
 }
 
@@ -54,7 +54,7 @@ export function card(robot: string, gaits: Report[]): string {
   const body = gaits
     .map((report) => {
       y += LINE / 2;
-      return row([titleOf(report)], 'font-weight="bold"') + row(heads(report), 'fill="#5a5f57"') + rows(report).map((line) => row(line)).join('') + row([rangeOf(report)], 'fill="#5a5f57" font-size="12"');
+      return row([titleOf(report)], 'font-weight="bold"') + row(columnHeadings(report), 'fill="#5a5f57"') + rows(report).map((line) => row(line)).join('') + row([rangeOf(report)], 'fill="#5a5f57" font-size="12"');
     })
     .join('');
   return (

@@ -13,7 +13,7 @@ const EDGE = 50;
  * Distance beyond the floor's tags, and distance from the picture's edge, from which the robot is about to leave, mm.
  */
 const NEAR = 50;
-const FROM_EDGE = 150;
+const PICTURE_MARGIN_MM = 150;
 /** Time over which the rate of pictures is counted, ms. */
 const RECENT = 2000;
 /** Number of pictures without a tag after which the tag counts as hidden. */
@@ -35,7 +35,7 @@ export interface Back {
   isNear: boolean;
 }
 
-export class Seen {
+export class TagTracker {
   size: [number, number] = [1, 1];
   /** The tags of the last picture. */
   tags: Tag[] = [];
@@ -97,7 +97,7 @@ export class Seen {
     const aside = ((way[0] * heading[1] - way[1] * heading[0]) / far) * scale;
     const reach = Math.max(...middles.map((each) => length(minus(each, middle)))) * scale + NEAR;
     const edge = Math.min(at[0], at[1], size[0] - at[0], size[1] - at[1]) * scale;
-    return { ahead, aside, reach, isNear: Math.hypot(ahead, aside) > reach || edge < FROM_EDGE };
+    return { ahead, aside, reach, isNear: Math.hypot(ahead, aside) > reach || edge < PICTURE_MARGIN_MM };
   }
 
   /** Forgets the path. */

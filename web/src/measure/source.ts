@@ -14,10 +14,10 @@ export class Source {
    * Number of calls of `stop`, which also comes before each new camera or film: a picture from before the last call
    * is dropped.
    */
-  private begun = 0;
-  private owed = 0;
+  private generation = 0;
+  private waitingPictures = 0;
   /** The page's time less the film's, s: the least that was seen, since the delay of a picture makes it larger. */
-  private ahead = Infinity;
+  private clockOffset = Infinity;
 
   constructor(
     private readonly video: HTMLVideoElement,
@@ -30,19 +30,19 @@ export class Source {
 
   /** The present time on the film's clock, s. */
   get now(): number {
-    return performance.now() / 1000 - this.ahead;
+    return performance.now() / 1000 - this.clockOffset;
   }
 
   /** Opens the rear camera; `onEnd` is called if the camera is lost. Throws a message for the user. */
   async camera(onEnd: () => void): Promise<void> {
     this.stop();
-    const { begun } = this;
+    const { generation: begun } = this;
     const { mediaDevices } = navigator as { mediaDevices?: MediaDevices };
     if (!mediaDevices) throw new Error('This page may not use a camera: open it by an address that begins with https. A film file works here, too.');
     const stream = await mediaDevices.getUserMedia(CAMERA).catch((error: unknown) => {
       throw new Error(refusal(error));
     });
-    if (this.begun !== begun) {
+    if (this.generation !== begun) {
       for (const track of stream.getTracks()) track.stop();
       return;
     }
@@ -56,18 +56,18 @@ export class Source {
   /** Plays a film file; resolves at its end. Throws a message for the user. */
   async file(file: File): Promise<void> {
     this.stop();
-    const { video, begun } = this;
+    const { video, generation: begun } = this;
     const address = URL.createObjectURL(file);
     try {
       const ended = new Promise<void>((done, fail) => {
         video.onended = () => done();
         video.onerror = () => fail(new Error(`${file.name} is no film that this browser can play; MP4 or WebM with H.264 or VP9 will do.`));
-        video.onemptied = () => this.begun !== begun && done();
+        video.onemptied = () => this.generation !== begun && done();
       });
       video.src = address;
       this.follow(LONGEST);
       await Promise.race([video.play().then(() => ended), ended]);
-      while (this.owed > 0 && this.begun === begun) await new Promise((later) => setTimeout(later, 20));
+      while (this.waitingPictures > 0 && this.generation === begun) await new Promise((later) => setTimeout(later, 20));
     } finally {
       URL.revokeObjectURL(address);
     }
@@ -75,8 +75,8 @@ export class Source {
 
   /** Switches the camera off, or leaves the film. */
   stop(): void {
-    this.begun += 1;
-    this.ahead = Infinity;
+    this.generation += 1;
+    this.clockOffset = Infinity;
     for (const track of this.stream?.getTracks() ?? []) track.stop();
     this.stream = null;
     this.video.srcObject = null;
@@ -89,20 +89,20 @@ export class Source {
    * picture is dropped.
    */
   private follow(most: number): void {
-    const { video, begun } = this;
-    this.owed = 0;
+    const { video, generation: begun } = this;
+    this.waitingPictures = 0;
     const next = (_: number, { mediaTime }: VideoFrameCallbackMetadata) => {
-      if (this.begun !== begun) return;
-      this.ahead = Math.min(this.ahead, performance.now() / 1000 - mediaTime);
+      if (this.generation !== begun) return;
+      this.clockOffset = Math.min(this.clockOffset, performance.now() / 1000 - mediaTime);
       video.requestVideoFrameCallback(next);
-      if (this.isCamera && this.owed >= most) return;
-      this.owed += 1;
-      if (!this.isCamera && this.owed >= most) video.pause();
+      if (this.isCamera && this.waitingPictures >= most) return;
+      this.waitingPictures += 1;
+      if (!this.isCamera && this.waitingPictures >= most) video.pause();
       void pictureOf(video)
         .then((picture) => this.take(picture, mediaTime))
         .finally(() => {
-          if (this.begun !== begun) return;
-          this.owed -= 1;
+          if (this.generation !== begun) return;
+          this.waitingPictures -= 1;
           if (!this.isCamera && video.paused && !video.ended) void video.play();
         });
     };

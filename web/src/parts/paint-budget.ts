@@ -3,17 +3,17 @@
 // of that time and has a lower resolution.
 
 /** Time within which a graphics chip finishes a picture, ms. */
-const QUICK = 34;
+const QUICK_PICTURE_MS = 34;
 /** Pause after a slow picture, as a multiple of its time. */
-const PAUSE = 2;
+const PAUSE_FACTOR = 2;
 /** Longest pause, ms. It limits the effect of times that are too long because the page was hidden. */
-const LONGEST = 1500;
+const LONGEST_PAUSE_MS = 1500;
 /** Lowest resolution, as a share of the screen's pixels along each side. */
 const COARSEST = 0.5;
 /** Factor of the resolution after a slow picture; it rises again by the inverse factor. */
-const COARSER = 0.8;
+const RESOLUTION_FACTOR = 0.8;
 /** Number of quick pictures in a row after which the resolution rises again. */
-const STEADY = 90;
+const QUICK_PICTURES_TO_REFINE = 90;
 
 export class PaintBudget {
   /** Resolution of the next picture, as a share of the screen's pixels along each side. */
@@ -23,9 +23,9 @@ export class PaintBudget {
   /** Time at which the last picture began, ms. */
   private start = 0;
   /** Earliest time of the next picture, ms. */
-  private next = 0;
+  private nextPictureTime = 0;
   /** Quick pictures in a row. */
-  private quick = 0;
+  private quickPictures = 0;
 
   constructor(private readonly gl: WebGL2RenderingContext) {}
 
@@ -37,13 +37,13 @@ export class PaintBudget {
       gl.deleteSync(this.fence);
       this.fence = null;
       const elapsed = now - this.start;
-      if (elapsed > QUICK) {
-        this.next = now + Math.min(LONGEST, PAUSE * elapsed);
-        this.resolution = Math.max(COARSEST, this.resolution * COARSER);
-        this.quick = 0;
-      } else if (++this.quick % STEADY === 0) this.resolution = Math.min(1, this.resolution / COARSER);
+      if (elapsed > QUICK_PICTURE_MS) {
+        this.nextPictureTime = now + Math.min(LONGEST_PAUSE_MS, PAUSE_FACTOR * elapsed);
+        this.resolution = Math.max(COARSEST, this.resolution * RESOLUTION_FACTOR);
+        this.quickPictures = 0;
+      } else if (++this.quickPictures % QUICK_PICTURES_TO_REFINE === 0) this.resolution = Math.min(1, this.resolution / RESOLUTION_FACTOR);
     }
-    return now >= this.next;
+    return now >= this.nextPictureTime;
   }
 
   /** Records that a picture was handed over. A picture painted only `once` may take long: it counts as quick. */

@@ -4,7 +4,7 @@ import type { Answer } from '../link/dialogue';
 import type { Link } from '../link/link';
 import { type Calibration, type Four, isSameCalibration, readCalibration, reversedServo, scaledServo, Transfer } from '../robot';
 import type { Session } from '../session';
-import { status } from '../status';
+import { parseStatus } from '../status';
 import { GAITS, WORDS } from '../words';
 
 /** Turns for proving a servo's sign, deg; tried in this order until the robot accepts one. */
@@ -263,7 +263,7 @@ async function settle(session: Session, wanted: Four<number> | null = null): Pro
   let last = null as { frames: number; pose: string } | null;
   for (let waited = 0; ; waited += POLL_INTERVAL) {
     const answer = await session.ask(WORDS.status, true);
-    const now = answer && status(answer.text);
+    const now = answer && parseStatus(answer.text);
     const here = now?.pose;
     if (!now || !here || session.link !== link) throw new BoardChanged('The board has restarted or is gone; what was not saved is lost.');
     const pose = here.join();

@@ -23,7 +23,7 @@ const round = (mm: number) => Math.round(mm * 2) / 2;
 const distance = ([x, y]: Point, [u, v]: Point) => Math.hypot(x - u, y - v);
 
 /** Returns the distance of `to` from `from`, measured along the direction from `from` to `towards`. */
-function along(from: Point, towards: Point, to: Point): number {
+function distanceAlong(from: Point, towards: Point, to: Point): number {
   const length = distance(from, towards) || 1;
   return ((towards[0] - from[0]) * (to[0] - from[0]) + (towards[1] - from[1]) * (to[1] - from[1])) / length;
 }
@@ -87,7 +87,7 @@ export function joints({ shafts, tips, points, sliders, legs }: Scene, value: (k
       return {
         name: `end of the ${end.name}'s ${hand} crank`,
         at: tips[servo],
-        lengthsAt: (to, isSymmetric) => [ownKey, ...(isSymmetric ? [otherKey] : [])].map((n) => [linkKey(n), round(along(shafts[servo], tips[servo], to))]),
+        lengthsAt: (to, isSymmetric) => [ownKey, ...(isSymmetric ? [otherKey] : [])].map((n) => [linkKey(n), round(distanceAlong(shafts[servo], tips[servo], to))]),
       };
     }),
   );
@@ -108,7 +108,7 @@ export function joints({ shafts, tips, points, sliders, legs }: Scene, value: (k
         name: `end of the ${place} ${side.name} arm`,
         at: tip,
         lengthsAt(to, isSymmetric) {
-          const length = round(along(shaft, tip, to));
+          const length = round(distanceAlong(shaft, tip, to));
           const scale = length / distance(shaft, tip);
           const movedTip: Point = [shaft[0] + scale * (tip[0] - shaft[0]), shaft[1] + scale * (tip[1] - shaft[1])];
           const change = place === 'front' ? distance(movedTip, rear) - distance(front, rear) : distance(front, movedTip) - distance(front, rear);
@@ -135,7 +135,7 @@ export function joints({ shafts, tips, points, sliders, legs }: Scene, value: (k
   const knees = legs.map(({ pivots, joints }, n): Joint => ({
     name: `knee of leg ${n + 1}`,
     at: joints[0],
-    lengthsAt: (to, isSymmetric) => ['leg.crank', ...(isSymmetric ? ['leg.follower'] : [])].map((key) => [key, round(along(pivots[0], joints[0], to))]),
+    lengthsAt: (to, isSymmetric) => ['leg.crank', ...(isSymmetric ? ['leg.follower'] : [])].map((key) => [key, round(distanceAlong(pivots[0], joints[0], to))]),
   }));
   return [...bases, ...arms, ...knees, ...cranks, ...ends];
 }

@@ -95,7 +95,7 @@ export class SimulatedBoard {
   /** Sends bytes to the UNO; they arrive one by one, at the baud rate. */
   send(bytes: Iterable<number>): void {
     this.line.push(...bytes);
-    this.carry();
+    this.deliverNextByte();
   }
 
   /** Sets the voltage of the board. */
@@ -107,10 +107,10 @@ export class SimulatedBoard {
   /** Opens or closes a contact between a pin and ground; while it is open, the pin's pull-up makes it high. */
   setContact(pin: number, isClosed: boolean): void {
     this.contacts.set(pin, isClosed);
-    this.level(pin, isClosed);
+    this.setPinLevel(pin, isClosed);
   }
 
-  private level(pin: number, isClosed: boolean): void {
+  private setPinLevel(pin: number, isClosed: boolean): void {
     const { B, C, D } = this.uno.ports;
     if (pin < 8) D.setPin(pin, !isClosed);
     else if (pin < 14) B.setPin(pin - 8, !isClosed);
@@ -140,7 +140,7 @@ export class SimulatedBoard {
     };
     uno.adc.avcc = this.volts;
     if (this.rail) uno.adc.channelValues[this.rail[0]] = this.rail[1];
-    for (const [pin, isClosed] of this.contacts) this.level(pin, isClosed);
+    for (const [pin, isClosed] of this.contacts) this.setPinLevel(pin, isClosed);
     uno.usart.onByteTransmit = (byte: number) => this.onByte(this.isGarbled ? UNREADABLE : byte);
     const before = this.before;
     new Scope(uno, (pin: number, rise: number, width: number) => this.onPulse(pin, before + rise, width));
@@ -151,7 +151,7 @@ export class SimulatedBoard {
     return Math.abs(this.uno.usart.baudRate / this.baud - 1) > RATE_ERROR;
   }
 
-  private carry(): void {
+  private deliverNextByte(): void {
     const { uno } = this;
     if (this.lineIsBusy || this.line.length === 0) return;
     this.lineIsBusy = true;
@@ -161,7 +161,7 @@ export class SimulatedBoard {
       if (uno !== this.uno || byte === undefined) return;
       if (!uno.receive?.(byte, this.isGarbled)) this.lost += 1;
       this.onReceived(byte, this.cycle);
-      this.carry();
+      this.deliverNextByte();
     }, Math.round((BYTE_BITS * FREQUENCY) / this.baud));
   }
 }

@@ -9,12 +9,12 @@ import { make } from './make';
 /** Number of characters that fit on a button of the usual width. */
 const LONG = 13;
 /** Share of the servos' torque-speed line from which the page warns of little reserve. */
-const TIGHT = 0.9;
+const HIGH_LOAD_SHARE = 0.9;
 /** The longest text of a prediction; a button reserves room for it. */
 const LONGEST = '-999.9 mm, -99.9°';
 
 /** Formats a displacement as a short text: mm forward, and degrees if it turns; '' for null. */
-export function short(displacement: Displacement | null): string {
+export function formatDisplacement(displacement: Displacement | null): string {
   if (!displacement) return '';
   const parts = [
     displacement.forward === null ? 'may drift' : Math.abs(displacement.forward) >= 0.5 ? `${displacement.forward.toFixed(1)} mm` : '',
@@ -77,7 +77,7 @@ export class Drive {
     const entry = this.buttons[gait];
     if (!entry) return;
     this.predictions.set(entry.command, prediction);
-    entry.note.textContent = short(prediction);
+    entry.note.textContent = formatDisplacement(prediction);
     this.showLine();
   }
 
@@ -95,14 +95,14 @@ export class Drive {
     for (const { command, line } of this.buttons) {
       const { lines } = this.predictions.get(command) ?? {};
       const share = lines?.[Math.ceil((this.pace * lines.length) / 100) - 1];
-      const isTight = share !== undefined && share >= TIGHT;
+      const isTight = share !== undefined && share >= HIGH_LOAD_SHARE;
       line.classList.toggle('tight', isTight);
       line.textContent = share === undefined ? '' : `${isTight ? '⚠ ' : ''}line ${share.toFixed(2)}`;
       if (isKnown && share !== undefined && share > largest) [hardest, largest] = [command, share];
     }
     const note = element('line-note');
-    note.classList.toggle('warning', largest >= TIGHT);
-    const meaning = largest >= 1 ? ': they fall behind their pulses; a slower pace asks less' : largest >= TIGHT ? ': little is left' : '';
+    note.classList.toggle('warning', largest >= HIGH_LOAD_SHARE);
+    const meaning = largest >= 1 ? ': they fall behind their pulses; a slower pace asks less' : largest >= HIGH_LOAD_SHARE ? ': little is left' : '';
     note.textContent = hardest === '' ? '' : `${hardest} asks most of its servos, ${largest.toFixed(2)} of their torque-speed line at ${this.pace} % of its pace${meaning}.`;
   }
 

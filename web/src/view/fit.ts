@@ -55,14 +55,14 @@ export class FitView {
     // Files of the list, which have no name while they are read, and changes made elsewhere are not checked.
     if (file === '' || toml === original || document.body.dataset.at !== 'room-build') this.fitting = wanted;
     const changed = [...wanted].filter(([key, value]) => this.fitting.get(key) !== value);
-    if (changed.length > 0) this.soon((work) => this.check(wanted, new Map(changed), work));
+    if (changed.length > 0) this.schedule((work) => this.check(wanted, new Map(changed), work));
   }
 
   /** Takes the robot.toml of lengths that are being dragged; null if the lengths are refused. */
   follow(toml: string | null): void {
     this.begin();
     if (toml === null) return;
-    this.soon(async (work) => {
+    this.schedule(async (work) => {
       this.parts.show3d(toml);
       await this.prove(toml, work);
     });
@@ -76,7 +76,7 @@ export class FitView {
     this.wish = { keys, range, show };
     if (this.isFitting) {
       this.begin();
-      this.soon((work) => this.search(work));
+      this.schedule((work) => this.search(work));
     }
   }
 
@@ -92,7 +92,7 @@ export class FitView {
     this.say('', null);
   }
 
-  private soon(act: (work: Work) => Promise<void>): void {
+  private schedule(act: (work: Work) => Promise<void>): void {
     const work: Work = { isOver: false, stop: () => {} };
     this.work = work;
     const run = () => act(work).catch((error: unknown) => this.say(`The parts could not be checked: ${messageOf(error)}.`, null));
@@ -102,7 +102,7 @@ export class FitView {
   /** Proves that a robot's parts fit, and shows the result; returns true if they do. */
   private async prove(toml: string, work: Work): Promise<boolean> {
     this.say('Checking that the parts fit…', null);
-    const result = await this.proved(toml, work);
+    const result = await this.proveParts(toml, work);
     if (work.isOver) return false;
     if (result instanceof Error) this.say(refusal(result), result.meeting);
     else this.say(`The parts fit${result === null ? '' : `: no two come nearer than ${result.toFixed(2)} mm`}.`, null);
@@ -113,7 +113,7 @@ export class FitView {
    * Returns the least distance between two parts, mm, null if it is unknown, or the error that says why they do not
    * fit.
    */
-  private async proved(toml: string, work: Work) {
+  private async proveParts(toml: string, work: Work) {
     const { fit, Unfit } = await import('../parts/workshop');
     if (work.isOver) return null;
     const { answer, stop } = fit(toml);
@@ -176,7 +176,7 @@ export class FitView {
       const { text, refusal } = Robot.lengths(toml, [...lengths], false);
       return { lengths, text, isRobot: refusal === null };
     };
-    const fits = async ({ text, isRobot }: ReturnType<typeof at>) => isRobot && !((await this.proved(text, work)) instanceof Error);
+    const fits = async ({ text, isRobot }: ReturnType<typeof at>) => isRobot && !((await this.proveParts(text, work)) instanceof Error);
     let best = at(0);
     if (isOpen) {
       const end = at(1);

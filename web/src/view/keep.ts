@@ -8,7 +8,7 @@ import { messageOf } from '../trouble';
 import { WORDS } from '../words';
 import { element } from './canvas';
 import { save } from './download';
-import { short } from './drive';
+import { formatDisplacement } from './drive';
 import type { Floor } from './floor';
 import { palette } from './palette';
 import { isShown } from './rooms';
@@ -158,7 +158,7 @@ export class Keep {
     if (!pair || !panel || !companion?.frame || this.isWaiting || !isShown(panel)) return;
     const { last } = this.session();
     const start = { x: 0, y: 0, heading: 0 };
-    const displacement = (frame: Frame | null) => (frame ? short(Robot.between(start, frame.place)) : '');
+    const displacement = (frame: Frame | null) => (frame ? formatDisplacement(Robot.between(start, frame.place)) : '');
     this.say(`${pair.names[0]}: ${displacement(last)}. ${pair.names[1]}: ${displacement(companion.frame)}.`, pair.output);
   }
 

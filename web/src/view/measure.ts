@@ -6,7 +6,7 @@ import type { AskedWalk } from '../../generated/measure';
 import { files } from '../files';
 import { Helper } from '../helper';
 import { MIN_CYCLES, Interrupted, Protocol, type Walk } from '../measure/protocol';
-import { Seen } from '../measure/seen';
+import { TagTracker } from '../measure/seen';
 import { Source } from '../measure/source';
 import type { FilmFunctions } from '../measure/worker';
 import type { Description, Gait, GaitPrediction } from '../robot';
@@ -59,7 +59,7 @@ export class MeasureView {
   private readonly measured: Measured;
   private readonly source: Source;
   private film: Promise<Film> | null = null;
-  private seen = new Seen();
+  private seen = new TagTracker();
   private doing: Doing = 'nothing';
   private protocol: Protocol | null = null;
   /** True while the robot is put back by hand, which does not belong to the film. */
@@ -184,7 +184,7 @@ export class MeasureView {
       this.say('The camera is gone.', true);
       this.show();
     });
-    this.seen = new Seen();
+    this.seen = new TagTracker();
     this.say('Place the camera so that all five tags are seen.');
   }
 
@@ -212,7 +212,7 @@ export class MeasureView {
     this.leave();
     const film = await this.loaded();
     await film.ask((film) => film.clear());
-    this.seen = new Seen();
+    this.seen = new TagTracker();
     this.doing = 'play';
     this.hasFilm = false;
     this.say(`Reading ${file.name}…`);
@@ -221,23 +221,23 @@ export class MeasureView {
       await this.source.file(file);
       if (this.doing !== 'play') return;
       this.hasFilm = true;
-      await this.compute(this.whole);
+      await this.compute(this.wholeFilm);
     } finally {
       this.doing = 'nothing';
     }
   }
 
   /** The chosen gait in the whole film as one walk; empty if the gaits are to be recognized by their paths. */
-  private get whole(): AskedWalk[] {
+  private get wholeFilm(): AskedWalk[] {
     const gait = this.gait.value;
     return gait === '' ? [] : [{ gait, during: null }];
   }
 
   /** Acts as the start button says: starts or ends recording or driving, or measures the film file again. */
   private async start(): Promise<void> {
-    if (this.doing === 'record') return this.compute(this.whole);
+    if (this.doing === 'record') return this.compute(this.wholeFilm);
     if (this.doing === 'drive') return void this.session().ask(WORDS.stop);
-    if (this.hasFilm) return this.compute(this.whole);
+    if (this.hasFilm) return this.compute(this.wholeFilm);
     const isPage = this.driver.value === 'page';
     const gaits = isPage ? this.drivable() : [];
     const film = await this.loaded();
@@ -278,10 +278,10 @@ export class MeasureView {
     this.show();
     try {
       await protocol.run({ gaits, cycles: cycles ?? 8, speed, pause: pause ?? 1 });
-      await this.compute(this.named(protocol.walks), speed);
+      await this.compute(this.withGaitNames(protocol.walks), speed);
     } catch (error) {
       if (!(error instanceof Interrupted) || protocol.walks.length === 0) throw error;
-      await this.compute(this.named(protocol.walks), speed, [`Ended before all gaits were walked: ${error.message}`]);
+      await this.compute(this.withGaitNames(protocol.walks), speed, [`Ended before all gaits were walked: ${error.message}`]);
     } finally {
       this.protocol = null;
       this.isPutBack = false;
@@ -291,7 +291,7 @@ export class MeasureView {
   }
 
   /** Converts walks: their gaits' commands become the names in robot.toml. */
-  private named(walks: Walk[]): AskedWalk[] {
+  private withGaitNames(walks: Walk[]): AskedWalk[] {
     const { gaits } = this.session().description;
     return walks.map(({ gait, during }) => ({ gait: gaits.find(({ command }) => command === gait)?.name ?? gait, during }));
   }

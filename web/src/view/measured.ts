@@ -1,5 +1,5 @@
 // The results of the room Measure: tables on the page, and files to keep, to share and to print.
-import { card, csv, heads, rangeOf, rows, titleOf } from '../measure/card';
+import { card, csv, columnHeadings, rangeOf, rows, titleOf } from '../measure/card';
 import type { Report } from '../../generated/measure';
 import { element } from './canvas';
 import { save } from './download';
@@ -25,7 +25,7 @@ export class Measured {
   show(gaits: Report[]): void {
     this.gaits = gaits;
     element('measure-results').hidden = gaits.length === 0;
-    const parts = gaits.flatMap((report) => [make('h4', {}, titleOf(report)), table(titleOf(report), heads(report), rows(report)), make('p', { className: 'note' }, rangeOf(report))]);
+    const parts = gaits.flatMap((report) => [make('h4', {}, titleOf(report)), table(titleOf(report), columnHeadings(report), rows(report)), make('p', { className: 'note' }, rangeOf(report))]);
     element('measured').replaceChildren(...parts);
   }
 

@@ -100,11 +100,11 @@ export class RoutinesView {
     const { shown } = this;
     if (!shown) return this.draw(null);
     const { floor, servos } = this.session();
-    this.paths ??= this.asked();
+    this.paths ??= this.makePathQuestion();
     this.paths.ask({ toml: Robot.putSteps(this.text.draft, shown.name, shown.steps).text, floor, servos, routine: shown.name });
   }
 
-  private asked(): NonNullable<typeof this.paths> {
+  private makePathQuestion(): NonNullable<typeof this.paths> {
     const helper = robotHelper(this.module);
     return new LatestQuestion((question) => helper.ask((robot) => robot.round(question)), (path) => this.draw(path));
   }
@@ -203,7 +203,7 @@ export class RoutinesView {
     const steps = shown?.steps ?? [];
     while (list.children.length > steps.length) list.lastElementChild?.remove();
     while (list.children.length < steps.length) list.append(this.block(list.children.length));
-    const wrong = shown && refused?.key === `routine.${shown.name}.steps` ? mistaken(refused) : null;
+    const wrong = shown && refused?.key === `routine.${shown.name}.steps` ? mistakenStep(refused) : null;
     steps.forEach((step, at) => {
       const [block, input] = [list.children[at], this.input(at)];
       if (!block || !input) return;
@@ -297,7 +297,7 @@ export class RoutinesView {
 }
 
 /** Returns the index of the step that a refusal names; null if it names none. */
-function mistaken({ refused }: Refused): number | null {
+function mistakenStep({ refused }: Refused): number | null {
   const number = /: step (\d+), /.exec(refused)?.[1];
   return number === undefined ? null : Number(number) - 1;
 }

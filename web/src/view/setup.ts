@@ -41,12 +41,12 @@ export class Setup implements Tools {
   private readonly message = element('setup-said');
   private readonly progress = element<HTMLProgressElement>('setup-progress');
   /** Number of actions that were begun or dropped so far: the result of an outdated action is not shown. */
-  private work = 0;
+  private actionCount = 0;
   private isBusy = false;
   /** True while an action runs that the dialog started by itself; the action of a button waits until it ends. */
   private isOwn = false;
   private next: (() => Promise<string>) | null = null;
-  private under: Promise<void> = Promise.resolve();
+  private runningAction: Promise<void> = Promise.resolve();
   private lastLink: Link | null = null;
   private wasReal = false;
   /**
@@ -151,7 +151,7 @@ export class Setup implements Tools {
    * (`isLost`).
    */
   private drop(isLost = true): void {
-    this.work += 1;
+    this.actionCount += 1;
     this.hold(false);
     this.next = null;
     this.guide = null;
@@ -161,7 +161,7 @@ export class Setup implements Tools {
 
   /** Closes the dialog after the current action; if settings are unsaved, restores the old calibration. */
   private async leave(): Promise<void> {
-    if (this.guide?.isCurrent) await this.under;
+    if (this.guide?.isCurrent) await this.runningAction;
     let message = '';
     const { guide } = this;
     if (guide?.isCurrent) {
@@ -206,18 +206,18 @@ export class Setup implements Tools {
   readonly setCalibration = (text: string, name: string): void => {
     this.act(async () => {
       const set = parseCalibration(text, name);
-      const guide = await this.asked();
+      const guide = await this.requireGuide();
       await guide.setCalibration(set);
       return `The robot has the calibration of ${name}. It is not saved yet.`;
     });
   };
 
   readonly run = (work: (guide: Guide) => Promise<string>): void => {
-    this.act(async () => work(await this.asked()));
+    this.act(async () => work(await this.requireGuide()));
   };
 
   /** Returns the guide of the connected robot; reads the robot's calibration first if needed. */
-  private async asked(): Promise<Guide> {
+  private async requireGuide(): Promise<Guide> {
     if (this.isLost) throw new Error(LOST);
     if (!this.session.answers) throw new Error(NO_ROBOT);
     this.guide ??= await Guide.begin(this.session);
@@ -231,13 +231,13 @@ export class Setup implements Tools {
       return;
     }
     this.isOwn = isOwn;
-    const number = ++this.work;
+    const number = ++this.actionCount;
     this.hold(true);
     this.say('');
-    this.under = work()
+    this.runningAction = work()
       .catch(messageOf)
       .then((message) => {
-        if (number !== this.work) return;
+        if (number !== this.actionCount) return;
         this.hold(false);
         this.say(message);
         this.update();
@@ -278,7 +278,7 @@ export class Setup implements Tools {
     if (!step.needsRobot || !this.session.answers || this.isLost) return;
     // Servos that a step has turned return to neutral before the next step.
     const { guide } = this;
-    if (!guide) this.act(async () => this.asked().then(() => ''), true);
+    if (!guide) this.act(async () => this.requireGuide().then(() => ''), true);
     else if (this.session.gait !== GAITS.stand) this.act(async () => guide.stand().then(() => ''), true);
   }
 

@@ -1,6 +1,6 @@
 // The overlay on the camera's picture: tags, the robot's path, its heading.
 import type { Pixel } from '../../generated/measure';
-import type { Seen } from '../measure/seen';
+import type { TagTracker } from '../measure/seen';
 import { surface } from './canvas';
 import { palette } from './palette';
 
@@ -8,7 +8,7 @@ import { palette } from './palette';
 const ARROW = 1.6;
 
 /** Draws over a picture that is centred in its element and scaled to fit, as `object-fit: contain` does. */
-export function drawSight(canvas: HTMLCanvasElement, seen: Seen): void {
+export function drawSight(canvas: HTMLCanvasElement, seen: TagTracker): void {
   const view = surface(canvas);
   if (!view) return;
   const { pen, width, height } = view;

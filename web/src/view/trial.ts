@@ -48,7 +48,7 @@ export class TrialView {
     private readonly session: () => Session,
     private readonly ask: (line: string) => Promise<unknown>,
     private readonly writer: Writer,
-    private readonly maker: GaitEditor,
+    private readonly editor: GaitEditor,
   ) {
     this.element('try').addEventListener('click', () => void this.tryIt());
     this.element('write').addEventListener('click', () => void this.write());
@@ -58,7 +58,7 @@ export class TrialView {
   /** Requests a trial of the edited gait. */
   predict(): void {
     const { toml, floor, servos } = this.session();
-    const made = this.maker.made();
+    const made = this.editor.made();
     if (!made || toml === '') return;
     this.trials ??= this.start();
     this.trials.ask({ toml, floor, servos, made });
@@ -74,7 +74,7 @@ export class TrialView {
   }
 
   private element<E extends HTMLElement = HTMLElement>(name: string): E {
-    return element<E>(`${this.maker.prefix}-${name}`);
+    return element<E>(`${this.editor.prefix}-${name}`);
   }
 
   private answered(trial: Trial | NoTrial | null): void {
@@ -89,13 +89,13 @@ export class TrialView {
     this.element('no').hidden = refused === null;
     put('refusal', refused?.refused ?? '');
     this.element('instead').replaceChildren(
-      ...(refused?.instead ?? []).map(({ what, value }) => button(OFFERS[what](value), () => this.maker.change(what, value))),
+      ...(refused?.instead ?? []).map(({ what, value }) => button(OFFERS[what](value), () => this.editor.change(what, value))),
     );
     this.say('');
   }
 
   private async tryIt(): Promise<void> {
-    const made = this.maker.made();
+    const made = this.editor.made();
     if (!made) return;
     this.say('The robot restarts with this gait…');
     const refused = await tryGait(this.session(), made, this.ask);
@@ -103,7 +103,7 @@ export class TrialView {
   }
 
   private async write(): Promise<void> {
-    const made = this.maker.made();
+    const made = this.editor.made();
     if (!made) return;
     const session = this.session();
     if (!session.isReal) return this.say(NO_BOARD);

@@ -56,7 +56,7 @@ export class Writer {
       isWritten = true;
       // The simulation must not be mistaken for a board.
       const where = isReal ? '' : ` to the ${name}`;
-      message.textContent = `written${where} and verified in ${written(performance.now() - start)}`;
+      message.textContent = `written${where} and verified in ${formatSeconds(performance.now() - start)}`;
     } catch (error) {
       message.textContent = `not written: ${messageOf(error)}${isTouched && !(error instanceof FirmwareMismatch) ? TORN[what === 'robot' ? 'robot' : 'all'] : ''}`;
     }
@@ -78,4 +78,4 @@ const TORN = {
 };
 
 /** Formats a time in seconds, with a decimal below 9.5 s. */
-const written = (ms: number) => `${(ms / 1000).toFixed(ms < 9500 ? 1 : 0)} s`;
+const formatSeconds = (ms: number) => `${(ms / 1000).toFixed(ms < 9500 ? 1 : 0)} s`;

@@ -1,5 +1,5 @@
 // The step Board: connects a board and identifies it.
-import { noBluetooth } from '../../link/bluetooth-link';
+import { bluetoothProblem } from '../../link/bluetooth-link';
 import { hasSerial, NO_SERIAL } from '../../link/port-link';
 import type { Session } from '../../session';
 import { button, list, note, row, warning, words } from '../make';
@@ -41,7 +41,7 @@ export const board: Step = {
       ),
       hasSerial() ? row(button('Choose its port…', connect, true)) : warning(NO_SERIAL),
     ];
-    parts.push(note(noBluetooth() ?? 'A board that has this firmware already can also be reached by a Bluetooth LE module: Bluetooth… is in this room.'));
+    parts.push(note(bluetoothProblem() ?? 'A board that has this firmware already can also be reached by a Bluetooth LE module: Bluetooth… is in this room.'));
     parts.push(note('Without a board, every step can be tried with the simulated one of this page.'));
     return parts;
   },

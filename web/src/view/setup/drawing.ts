@@ -13,7 +13,7 @@ export interface SelectedServo {
 }
 
 /** Half of the drawn distance from the front shafts to the rear shafts, mm. */
-const SHORT = 34;
+const HALF_LENGTH_MM = 34;
 /** Length of the arrow's arc, deg: more than the servo turns, to be seen clearly. */
 const ARC = 55;
 const NAMESPACE = 'http://www.w3.org/2000/svg';
@@ -29,7 +29,7 @@ function shape(tag: string, attributes: Record<string, string | number>, text = 
 }
 
 /** Returns the point at a distance, mm, and an angle from another point, in the drawing's frame with y downward. */
-function from([x, y]: Point, length: number, degrees: number): Point {
+function pointAt([x, y]: Point, length: number, degrees: number): Point {
   return [x + length * Math.cos(degrees * RADIANS), y - length * Math.sin(degrees * RADIANS)];
 }
 
@@ -39,23 +39,23 @@ const line = (className: string, [x1, y1]: Point, [x2, y2]: Point) => shape('lin
 function arrow(shaft: Point, radius: number, begin: number, by: number): SVGElement[] {
   const sense = Math.sign(by);
   const end = begin + sense * ARC;
-  const [x1, y1] = from(shaft, radius, begin);
-  const [x2, y2] = from(shaft, radius, end);
+  const [x1, y1] = pointAt(shaft, radius, begin);
+  const [x2, y2] = pointAt(shaft, radius, end);
   // SVG's sweep flag is 0 for counter-clockwise, since y is downward.
   const arc = shape('path', { class: 'arrow', d: `M ${x1} ${y1} A ${radius} ${radius} 0 0 ${by > 0 ? 0 : 1} ${x2} ${y2}` });
-  const head = [from(shaft, radius + 6, end - sense * 9), [x2, y2], from(shaft, radius - 6, end - sense * 9)];
+  const head = [pointAt(shaft, radius + 6, end - sense * 9), [x2, y2], pointAt(shaft, radius - 6, end - sense * 9)];
   return [arc, shape('polyline', { class: 'arrow', points: head.map((spot) => spot.map((n) => (n as number).toFixed(2)).join()).join(' ') })];
 }
 
 /** Draws the robot; `shown` selects one servo. */
 export function drawing({ servos, plate }: Description, { shafts, tips }: Scene, shown: SelectedServo | null): SVGElement {
-  const cut = Math.max(...shafts.map(([, y]) => Math.abs(y))) - SHORT;
+  const cut = Math.max(...shafts.map(([, y]) => Math.abs(y))) - HALF_LENGTH_MM;
   const short = ([x, y]: Point): Point => [x, -Math.sign(y) * (Math.abs(y) - cut)];
   const places = shafts.map(short) as Four<Point>;
   const length = Math.hypot(tips[0][0] - shafts[0][0], tips[0][1] - shafts[0][1]);
   const [half, tall] = [plate.half[0], plate.half[1] - cut];
   const wide = Math.max(...places.map(([x]) => Math.abs(x))) + length + 58;
-  const high = Math.max(SHORT + length, tall) + 8;
+  const high = Math.max(HALF_LENGTH_MM + length, tall) + 8;
   const angles = servos.map(({ neutral }, n) => `${nameOf(n)}: ${neutral.toFixed(1)}°`).join('; ');
   const turn = shown?.by ? ` An arrow shows A${shown.servo + 1} turning ${shown.by > 0 ? 'counter-clockwise' : 'clockwise'}.` : '';
   const svg = shape('svg', {
@@ -74,10 +74,10 @@ export function drawing({ servos, plate }: Description, { shafts, tips }: Scene,
     const { neutral, pin } = servos[n];
     const isShown = shown?.servo === n;
     const group = shape('g', { class: `servo a${n + 1}${shown && !isShown ? ' other' : ''}` });
-    const tip = from(shaft, length, neutral);
-    group.append(line('zero', shaft, from(shaft, length * 0.6, 0)), line('crank', shaft, tip));
+    const tip = pointAt(shaft, length, neutral);
+    group.append(line('zero', shaft, pointAt(shaft, length * 0.6, 0)), line('crank', shaft, tip));
     if (isShown && shown.by !== null) {
-      group.append(line('ghost', shaft, from(shaft, length, neutral + shown.by)), ...arrow(shaft, length * 0.75, neutral + Math.sign(shown.by) * 8, shown.by));
+      group.append(line('ghost', shaft, pointAt(shaft, length, neutral + shown.by)), ...arrow(shaft, length * 0.75, neutral + Math.sign(shown.by) * 8, shown.by));
     }
     group.append(shape('circle', { class: 'shaft', cx: shaft[0], cy: shaft[1], r: 5 }));
     // The text is outside the arrow, which may reach as far as the crank.
