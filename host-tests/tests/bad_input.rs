@@ -7,7 +7,7 @@
 use std::thread;
 
 use fastrand::Rng;
-use lizard_core::memory::record::CONTENT;
+use lizard_core::memory::record::CONTENT_BYTES;
 use lizard_core::virtual_board::Eeprom;
 use lizard_fuzz::Board;
 use lizard_host_tests::{robot, scaled};
@@ -85,14 +85,14 @@ fn thousands_of_memories_do_no_harm_to_the_core() {
     in_parts(|rng, count| {
         for _ in 0..count / 1_000 {
             // Changes one byte, three bytes, or about as many bytes as there are.
-            let changed = [1, 3, 3 * CONTENT][rng.usize(..3)];
-            let mut data = [0; 3 * CONTENT + 12];
+            let changed = [1, 3, 3 * CONTENT_BYTES][rng.usize(..3)];
+            let mut data = [0; 3 * CONTENT_BYTES + 12];
             for _ in 0..changed {
-                data[rng.usize(..3 * CONTENT)] = rng.u8(..);
+                data[rng.usize(..3 * CONTENT_BYTES)] = rng.u8(..);
             }
             let patches = rng.usize(..=4);
-            rng.fill(&mut data[3 * CONTENT..]);
-            lizard_fuzz::memory(&data[..3 * CONTENT + 3 * patches]);
+            rng.fill(&mut data[3 * CONTENT_BYTES..]);
+            lizard_fuzz::memory(&data[..3 * CONTENT_BYTES + 3 * patches]);
         }
     });
 }

@@ -2,7 +2,7 @@
 //! carries them, for 15 seconds each (`LIZARD_FUZZ` times as long if that is set).
 
 use fastrand::Rng;
-use lizard_core::memory::copies::{self, Outcome};
+use lizard_core::memory::copies::{self, SavedState};
 use lizard_core::memory::settings::Settings;
 use lizard_core::virtual_board::Eeprom;
 use lizard_host_tests::{FirmwareBench, robot};
@@ -64,7 +64,7 @@ fn assert_unharmed(mut bench: FirmwareBench) {
     let mut settings = Settings::of(firmware);
     let outcome = copies::load(firmware, &Eeprom::with(contents), &mut settings);
     assert!(
-        matches!(outcome, Outcome::Latest | Outcome::Blank),
+        matches!(outcome, SavedState::Latest | SavedState::Blank),
         "{outcome:?}"
     );
     assert!(contents[192..].iter().all(|byte| *byte == 0xff));

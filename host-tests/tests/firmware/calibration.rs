@@ -202,7 +202,7 @@ fn every_pulse_of_a_walk_is_exact_while_the_memory_is_written() {
         let start = walk.next_frame();
         let written = walk.bench.uno.eeprom_operations().len();
         walk.bench.send("save");
-        // The serial line stays busy: the main loop reads none of it until it has saved.
+        // The serial line stays busy, since the main loop reads no byte until it has saved.
         for _ in 0..14 {
             walk.bench.uno.send(b" \t ");
             walk.run_to(walk.bench.uno.cycle() + FRAME);
@@ -211,7 +211,7 @@ fn every_pulse_of_a_walk_is_exact_while_the_memory_is_written() {
         let frames = walk.frames_since(start);
         assert!(frames.len() >= 40);
         for (frame, asked) in frames {
-            assert_eq!(frame.all(), Some(asked), "{frame:?}");
+            assert_eq!(frame.all_widths(), Some(asked), "{frame:?}");
         }
         assert_eq!(walk.late(), 0);
         if walk.is_by_the_data_sheet() {

@@ -1,7 +1,7 @@
 //! Tests of the console: each line gets one answer, and the pulses agree with that answer.
 
 use fastrand::Rng;
-use lizard_host::sim::analysis::instants;
+use lizard_host::sim::analysis::servo_frames_of;
 use lizard_host_tests::{FirmwareBench, robot};
 use lizard_kinematics::{Check, Limits, Solution};
 use simulated_uno::{FREQUENCY, Fidelity};
@@ -131,7 +131,7 @@ fn refused_poses() -> Vec<(String, u8)> {
 fn certain_refusal_code(solution: &Solution) -> Option<u8> {
     let broken = |by: f64, stroke: bool| {
         let mut all = limits(by).violations(solution);
-        all.any(|violation| Check::STROKE.contains(&violation.what) == stroke)
+        all.any(|violation| Check::STROKE.contains(&violation.check) == stroke)
     };
     let size = robot().lizard().links.l10 / 135.0;
     let ends = [&solution.head, &solution.tail];
@@ -265,7 +265,7 @@ fn status_agrees_with_the_pulses() {
         bench.say("stop");
         bench.run_ms(100);
         let status = Status::of(&mut bench);
-        let sent = instants(robot(), &bench.run_for_frames(1))[0]
+        let sent = servo_frames_of(robot(), &bench.run_for_frames(1))[0]
             .angles
             .expect("four pulses");
         for (servo, (printed, sent)) in status.pose().into_iter().zip(sent).enumerate() {
@@ -324,7 +324,7 @@ fn watch_reports_the_pose_of_every_nth_frame_until_it_is_switched_off() {
         assert_eq!(bench.say("watch 7"), "ok watch 7");
         let received = bench.lines().len();
         let frames = bench.run_for_frames(75);
-        let sent = instants(robot(), &frames);
+        let sent = servo_frames_of(robot(), &frames);
         // A report after the beginning of the last frame may belong to the next one.
         let end = frames[74].start;
         let lines: Vec<String> = bench.lines()[received..]

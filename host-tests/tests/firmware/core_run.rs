@@ -3,7 +3,7 @@
 
 use fastrand::Rng;
 use lizard_host::sim::core_run;
-use lizard_host::sim::frame::{FRAME, first_cycle, frames, servo_pins};
+use lizard_host::sim::frame::{FRAME, first_cycle, group_frames, servo_pins};
 use lizard_host_tests::{FirmwareBench, minutes, robot};
 use simulated_uno::{CYCLES_PER_MS, FREQUENCY, Fidelity};
 
@@ -106,7 +106,7 @@ fn random_commands_give_the_same_widths_on_the_avr_and_here() {
 
         bench.uno.run_until_cycle(end());
         let count = (bench.uno.cycle() - first_cycle(first)) / FRAME;
-        let sent = frames(&bench.uno.edges(), pins, first, count);
+        let sent = group_frames(&bench.uno.edges(), pins, first, count);
         let commands = core_run::play(
             *robot().firmware(),
             &bench.uno.received_by_uno(),

@@ -36,7 +36,7 @@ fn a_count_that_carries_while_main_reads_it_is_read_as_before_or_after() {
         let start = walk.next_frame();
         let mut seen = [0, 0];
         // Main reads the count shortly before it writes the answer's last part, when most of the earlier parts are
-        // sent. Ticks and edges delay that, so the delay is measured at the same place in the frame at which the
+        // sent. Ticks and edges delay this read, so the delay is measured at the point of the frame at which the
         // read is to happen.
         let rise = |n: u64| start + 3 * n * FRAME + SLOT;
         let (mut written, mut early, mut frame) = (150_000, 2_800, 0);

@@ -245,7 +245,7 @@ fn impossible_numbers_move_no_servo_even_with_a_valid_checksum() {
     for_each(&wrong_sections(), assert_finds_no_robot);
 }
 
-/// The check of the section is all that the start costs more than with a compiled-in robot.
+/// Checking the section is the only cost at the start that a compiled-in robot would not have.
 #[test]
 fn the_largest_section_is_checked_within_a_frame() {
     for_each(

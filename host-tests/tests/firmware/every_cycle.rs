@@ -36,7 +36,7 @@ fn a_byte_at_any_cycle_of_a_frame_moves_no_edge_and_is_not_lost() {
         let frames = walk.frames_since(start);
         assert!(frames.len() as u64 >= bytes * apart / FRAME);
         for (frame, asked) in frames {
-            assert_eq!(frame.all(), Some(asked), "{frame:?}");
+            assert_eq!(frame.all_widths(), Some(asked), "{frame:?}");
         }
         assert_eq!((walk.late(), walk.word("serial::LOST")), (0, 0));
         let answers = (walk.bench.lines().len() - answers) as u64;

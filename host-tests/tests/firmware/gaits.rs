@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use lizard_host::sim::analysis::instants;
+use lizard_host::sim::analysis::servo_frames_of;
 use lizard_host_tests::robot;
 use lizard_robot::CheckedGait;
 use simulated_uno::Fidelity;
@@ -29,7 +29,7 @@ fn decode_angles(gait: &CheckedGait, fidelity: Fidelity) -> Vec<[f64; 4]> {
     assert_eq!(bench.say(&line), format!("ok {line}"));
     let frames = bench.run_for_frames((3.5 * gait.period() * SECOND as f64) as u64 + 3 * SECOND);
     let angles = |at: lizard_host::sim::analysis::ServoFrame| at.angles.expect("four pulses");
-    instants(robot(), &frames).into_iter().map(angles).collect()
+    servo_frames_of(robot(), &frames).into_iter().map(angles).collect()
 }
 
 /// Returns the phase of a gait this many frames after its start.

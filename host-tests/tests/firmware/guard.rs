@@ -6,7 +6,7 @@ use lizard_core::numbers::part::{End, Side};
 use lizard_core::numbers::pose::Pose as Sweeps;
 use lizard_core::numbers::units::Sweep;
 use lizard_host::prove::{STEPS_BAND, margin_band};
-use lizard_host::sim::analysis::instants;
+use lizard_host::sim::analysis::servo_frames_of;
 use lizard_host_tests::robot;
 use lizard_kinematics::{self as kinematics, Limits, Pose, Solution, wrap};
 use simulated_uno::Fidelity;
@@ -48,7 +48,7 @@ fn limits(by: f64) -> Limits {
 /// True if a pose (deg, chassis frame) is within these limits.
 fn is_safe(angles: [f64; 4], limits: &Limits) -> bool {
     let solved = robot().lizard().solve(&Pose::from(angles));
-    solved.is_ok_and(|solution| limits.allow(&solution))
+    solved.is_ok_and(|solution| limits.is_safe(&solution))
 }
 
 /// True if every servo's angle is inside its travel by more than the rounding.
@@ -239,7 +239,7 @@ fn no_frame_breaks_a_limit_for_any_commands() {
             frames.extend(bench.run_for_frames(rng.u64(..2 * SECOND)));
         }
         let lax = limits(-1.0);
-        let sent = instants(robot(), &frames);
+        let sent = servo_frames_of(robot(), &frames);
         for at in &sent {
             let angles = at.angles.expect("four pulses");
             assert!(is_safe(angles, &lax), "{at:?}");
@@ -276,7 +276,7 @@ fn poses_with_unsafe_path_between() -> Option<[[f64; 4]; 2]> {
             let share = f64::from(*n) / 100.0;
             let at = |i: usize| Sweep((from[i] + share * (to[i] - from[i])) as i16);
             let pose = Sweeps(std::array::from_fn(at));
-            Clearance::of(firmware, &pose).hazard(firmware).is_some()
+            Clearance::of(firmware, &pose).first_hazard(firmware).is_some()
         };
         (0..=100).filter(unsafe_at).count()
     };
@@ -334,7 +334,7 @@ fn a_path_that_breaks_a_limit_ends_before_that() {
         assert_eq!(Status::of(&mut bench).text("guard"), "held");
         let frames = bench.run_for_frames(SECOND);
         assert!(frames.iter().all(|frame| frame.widths == frames[0].widths));
-        let held = instants(robot(), &frames)[0].angles.expect("four pulses");
+        let held = servo_frames_of(robot(), &frames)[0].angles.expect("four pulses");
         assert!(is_safe(held, &limits(-1.0)) && held != from);
         // The robot can move again: the path back to neutral is safe.
         assert_eq!(bench.say("stand"), "ok stand");

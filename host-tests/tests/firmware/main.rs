@@ -104,7 +104,7 @@ fn awake(fidelity: Fidelity) -> FirmwareBench {
 /// Returns the command for the robot's first gait that moves. Every robot to be tested needs such a gait: without
 /// it, most of these tests would see a robot that only stands.
 fn first_moving_gait() -> String {
-    let moving = tour::moving(robot());
+    let moving = tour::moving_gaits(robot());
     let first = moving
         .first()
         .expect("a robot to be tested has a gait that moves");

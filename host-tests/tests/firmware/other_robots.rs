@@ -39,7 +39,7 @@ fn assert_in_time(robot: &Robot, gait: &str, flood: &str, what: &str) {
     let asked = core_run::play(*robot.firmware(), received, first, before + sent.len());
     for (frame, asked) in sent.iter().zip(&asked.widths[before..]) {
         let asked = asked.map(u64::from);
-        assert_eq!(frame.all(), Some(asked), "{what}, {flood:?}: {frame:?}");
+        assert_eq!(frame.all_widths(), Some(asked), "{what}, {flood:?}: {frame:?}");
     }
 }
 
@@ -56,7 +56,7 @@ fn no_frame_is_late_for_any_robot_in_any_gait_under_any_flood() {
                 _ => {}
             }
             let what = format!("robot {n}");
-            let gaits = tour::moving(&robot);
+            let gaits = tour::moving_gaits(&robot);
             for flood in FLOODS {
                 let gait = gaits[rng.usize(..gaits.len())];
                 assert_in_time(&robot, gait, flood, &what);

@@ -1,7 +1,7 @@
 //! Tests of the saved settings: with power cuts during a save, at every byte and with every torn value of that
 //! byte, and with bits that flip over the years.
 
-use lizard_core::memory::copies::{self, Outcome};
+use lizard_core::memory::copies::{self, SavedState};
 use lizard_core::memory::settings::Settings;
 use lizard_core::virtual_board::Eeprom;
 use lizard_host_tests::{FirmwareBench, robot};
@@ -11,10 +11,10 @@ use crate::awake;
 use crate::kept::{calibration, power_cycle};
 
 /// Loads the settings of an EEPROM as the core does.
-fn load(contents: &[u8; EEPROM_SIZE]) -> (Settings, Outcome) {
+fn load(contents: &[u8; EEPROM_SIZE]) -> (Settings, SavedState) {
     let mut settings = Settings::of(robot().firmware());
     let outcome = copies::load(robot().firmware(), &Eeprom::with(*contents), &mut settings);
-    settings.set_turn(0);
+    settings.set_save_number(0);
     (settings, outcome)
 }
 
@@ -138,7 +138,7 @@ fn any_flipped_bit_gives_the_settings_the_other_copy_or_the_defaults() {
     let contents = saved.bench.uno.eeprom();
     let [latest, older] = [contents, saved.before].map(|contents| load(&contents).0);
     let mut defaults = Settings::of(robot().firmware());
-    defaults.set_turn(0);
+    defaults.set_save_number(0);
     let mut found = [0, 0, 0];
     for bit in 0..8 * EEPROM_SIZE {
         let mut flipped = contents;

@@ -71,7 +71,7 @@ fn every_width_is_the_one_that_was_asked_for() {
                 (bench, first)
             };
             let is_decided = |(bench, first): &(FirmwareBench, u64)| {
-                core_run::undecided(&bench.uno.received_by_uno(), *first)
+                core_run::undecided_lines(&bench.uno.received_by_uno(), *first)
                     .next()
                     .is_none()
             };

@@ -155,8 +155,8 @@ fn digest(name: &str) -> (u64, u64) {
 fn ten_minutes_of_random_commands_give_every_robot_its_recorded_pulses() {
     // Recorded when waveforms first had 64 samples (commit d99bebe), which changed only widths:
     // there are as many edges as on the last firmware that had each robot compiled into it
-    // (commit e49c5b5). The large robot is the paper's, four thirds as large: its servos do the
-    // same. The robot with a grain was recorded when its file was added.
+    // (commit e49c5b5). The large robot is the paper's robot scaled by 4/3, so its servos get the
+    // same pulses. The robot with a grain was recorded when its file was added.
     // Recorded again when `deadman` began to count only commands, which ends some gaits earlier.
     let recorded = [
         ("grain", (0xa932_205f_0ec5_bed7, 187_804)),

@@ -1,7 +1,7 @@
 //! Tests that stop main at every instruction that shares data with an interrupt: at the hand-over of a
 //! frame, at the LED, in an answer, and before it sleeps.
 
-use lizard_host::sim::frame::{FRAME, frames, servo_pins};
+use lizard_host::sim::frame::{FRAME, group_frames, servo_pins};
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::Fidelity;
 
@@ -53,8 +53,8 @@ fn a_frame_is_played_whole_or_not_at_all_wherever_main_stops_in_the_hand_over() 
         let asked: Vec<_> = frames.iter().map(|(_, asked)| Some(*asked)).collect();
         let mut next = 0;
         for (n, (sent, _)) in frames.iter().enumerate() {
-            let is_next = sent.all() == asked[next];
-            let is_old = next > 0 && sent.all() == asked[next - 1];
+            let is_next = sent.all_widths() == asked[next];
+            let is_old = next > 0 && sent.all_widths() == asked[next - 1];
             assert!(is_next || is_old, "{} cycles in: {sent:?}", n / 3);
             next += usize::from(is_next);
         }
@@ -85,7 +85,7 @@ fn a_rest_instead_of_a_waiting_frame_ends_all_pulses_or_none() {
         walk.bench.uno.stall_main(stall);
         walk.run_to(frame + 4 * FRAME - SLOT / 2);
         let edges = walk.bench.uno.edges();
-        let sent = frames(&edges, servo_pins(robot()), frame, 4);
+        let sent = group_frames(&edges, servo_pins(robot()), frame, 4);
         for frame in &sent {
             let pulses = frame.widths.iter().flatten().count();
             assert!(pulses % 4 == 0, "{n} cycles in: {frame:?}");
@@ -176,9 +176,9 @@ fn old_widths_repeat_while_main_stands_still() {
     assert!(
         frames[1..]
             .iter()
-            .all(|(frame, _)| frame.all() == last.all())
+            .all(|(frame, _)| frame.all_widths() == last.all_widths())
     );
-    assert!(last.all().is_some());
+    assert!(last.all_widths().is_some());
 }
 
 #[test]

@@ -9,7 +9,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use lizard_core::numbers::units::CYCLES_PER_US;
-use lizard_core::virtual_board::Running;
+use lizard_core::virtual_board::RunningRobot;
 use lizard_host_tests::{FirmwareBench, robot};
 
 /// Time after which simavr is stopped. It runs in real time or, on a busy machine, slower.
@@ -22,13 +22,13 @@ fn gait() -> String {
 
 /// Writes an EEPROM whose saved settings start the gait at power-on, as a HEX file.
 fn write_eeprom(folder: &Path) {
-    let mut running = Running::power_on(*robot().firmware());
-    running.run(50);
+    let mut running = RunningRobot::power_on(*robot().firmware());
+    running.run_frames(50);
     let boot = format!("boot {}", gait());
-    assert_eq!(running.say(&boot), format!("ok {boot}"));
+    assert_eq!(running.send_line(&boot), format!("ok {boot}"));
     running.board.send(b"save\r");
-    running.run(200);
-    let printed = running.lines().join("\n");
+    running.run_frames(200);
+    let printed = running.read_lines().join("\n");
     assert!(
         printed.is_empty() || printed.contains("ok save"),
         "{printed}"

@@ -1,6 +1,6 @@
 //! Tests of `stop`, `rest` and waking, ordered at any moment and checked to the frame.
 
-use lizard_host::sim::frame::{FRAME, Frame, frames as frames_of, servo_pins};
+use lizard_host::sim::frame::{FRAME, Frame, group_frames as frames_of, servo_pins};
 use lizard_host_tests::{FirmwareBench, robot};
 use lizard_robot::Servo;
 use simulated_uno::{CYCLES_PER_MS, CYCLES_PER_US, Fidelity};
@@ -123,7 +123,7 @@ fn servos_wake_one_after_another_a_tenth_of_a_second_apart() {
         let frames = bench.run_for_frames(100);
         let [a1, a2, a3, a4] = woken(&frames);
         assert_eq!([a2 - a1, a3 - a2, a4 - a3], [5, 5, 5]);
-        // The servos wake where they were, and move to `stand` from there.
+        // The servos wake in the pose in which they rested, and move to `stand` from this pose.
         for (servo, at) in [a1, a2, a3, a4].into_iter().enumerate() {
             assert_eq!(frames[at].widths[servo], Some(pose[servo]));
         }

@@ -73,13 +73,13 @@ fn ten_minutes_of_commands_give_the_same_widths_and_words_on_the_avr_and_here() 
         let (mut recording, mut lines) = run(&script, fidelity);
         let first = recording.frames.first;
         let undecided: Vec<usize> =
-            core_run::undecided(&recording.received_by_uno, first).collect();
+            core_run::undecided_lines(&recording.received_by_uno, first).collect();
         if !undecided.is_empty() {
             for &line in &undecided {
                 script.steps[line].ms += 1;
             }
             (recording, lines) = run(&script, fidelity);
-            let left = core_run::undecided(&recording.received_by_uno, first).count();
+            let left = core_run::undecided_lines(&recording.received_by_uno, first).count();
             assert_eq!(left, 0, "lines that end at a tick");
         }
         assert_eq!(recording.state, State::Alive);
@@ -101,7 +101,7 @@ fn ten_minutes_of_commands_give_the_same_widths_and_words_on_the_avr_and_here() 
         let here: Vec<&str> = here.collect();
         let lines = lines.iter().map(String::as_str);
         let lines: Vec<&str> = lines.filter(|line| !is_report(line)).collect();
-        // Stock simavr has a reference of its own, whatever robot.toml says.
+        // Stock simavr measures against a reference voltage of its own, whatever robot.toml says.
         let printed = |line: &str| comparable_line(line, fidelity);
         for (n, (here, there)) in here.iter().zip(&lines).enumerate() {
             assert_eq!(printed(here), printed(there), "{fidelity:?}, line {n}");

@@ -1,6 +1,6 @@
 //! A robot in a gait, and the pulse widths that it should send, for tests that sweep an event over every cycle.
 
-use lizard_host::sim::frame::{FRAME, Frame, frames, servo_pins};
+use lizard_host::sim::frame::{FRAME, Frame, group_frames, servo_pins};
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::Fidelity;
 
@@ -55,7 +55,7 @@ impl Walk {
     pub fn frames_since(&self, start: u64) -> Vec<(Frame, [u64; 4])> {
         let count = (self.bench.uno.cycle() + SLOT / 2 - start) / FRAME;
         let edges = self.bench.uno.edges();
-        let sent = frames(&edges, servo_pins(robot()), start, count);
+        let sent = group_frames(&edges, servo_pins(robot()), start, count);
         let asked = self.commands(start, count);
         sent.into_iter().zip(asked).collect()
     }

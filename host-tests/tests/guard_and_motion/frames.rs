@@ -8,7 +8,7 @@ use lizard_core::motion::{Activity, Motion};
 use lizard_core::numbers::gaits::GaitId;
 use lizard_core::numbers::pose::{Pose, Pulses};
 use lizard_core::numbers::units::CYCLE;
-use lizard_core::virtual_board::Running;
+use lizard_core::virtual_board::RunningRobot;
 use lizard_host_tests::Named;
 use lizard_robot::{CheckedGait, Robot};
 
@@ -89,7 +89,7 @@ pub fn settling_frames(robot: &Robot) -> u32 {
 pub struct Walker<'a> {
     name: &'a str,
     robot: &'a Robot,
-    running: Running,
+    running: RunningRobot,
     /// Speed of each servo in the last frame, deg/s.
     speeds: [f64; 4],
     /// True if the servos may stop at once in the next frame.
@@ -105,7 +105,7 @@ impl<'a> Walker<'a> {
         let mut walker = Self {
             name,
             robot,
-            running: Running::power_on(*robot.firmware()),
+            running: RunningRobot::power_on(*robot.firmware()),
             speeds: [0.0; 4],
             may_stop: false,
             most_jerk: max_speed_change(robot),
@@ -132,12 +132,12 @@ impl<'a> Walker<'a> {
 
     /// Reads all output of the console.
     pub fn read(&mut self) -> Vec<String> {
-        self.running.lines()
+        self.running.read_lines()
     }
 
     /// Types a line; returns its answer.
     pub fn say(&mut self, line: &str) -> String {
-        let answer = self.running.say(line);
+        let answer = self.running.send_line(line);
         if ["stop", "rest"].contains(&line) {
             self.may_stop = true;
         }
@@ -188,7 +188,7 @@ impl<'a> Walker<'a> {
         assert_ne!(Verdict::of(robot, at), Verdict::Unsafe, "{name}: {at:?}");
         self.check_pulses(&pose, pulses);
 
-        // During a move the phase is 0. In a gait it is 0 only once per cycle.
+        // During a move, the phase is 0. In a gait, the phase is 0 only once per cycle.
         let in_gait = motion.phase() != 0;
         let limit = if in_gait {
             robot.pace().gait_slew
@@ -279,7 +279,7 @@ pub fn any_command(rng: &mut Rng, robot: &Robot) -> String {
     }
 }
 
-/// Returns the robot's activity once a command is complete; `None` if the command is none that selects an activity.
+/// Returns the robot's activity once a command is complete; `None` for a command that selects no activity.
 pub fn final_activity(robot: &Robot, command: &str) -> Option<Activity> {
     let gait = robot
         .gaits()

@@ -45,7 +45,7 @@ impl Findings {
     fn add(&mut self, robot: &Robot, pose: &Pose) {
         let firmware = robot.firmware();
         let core = Clearance::of(firmware, pose);
-        let hazard = core.hazard(firmware);
+        let hazard = core.first_hazard(firmware);
         let named = hazard.map(index_of);
         match named {
             None => self.safe += 1,
@@ -235,7 +235,7 @@ fn a_reason_carries_the_value_that_broke_the_limit() {
     for (n, Named { name, robot }) in robots().iter().enumerate() {
         for pose in poses(&mut rng(300 + n as u64), robot).take(2000) {
             let core = Clearance::of(robot.firmware(), &pose);
-            match core.hazard(robot.firmware()) {
+            match core.first_hazard(robot.firmware()) {
                 None => {}
                 Some(Hazard::Margin { margin, value }) => {
                     let index = MARGINS.iter().position(|known| *known == margin);
@@ -265,7 +265,7 @@ fn the_smallest_margin_is_the_one_of_kinematics() {
             let at = angles(robot.firmware(), &pose);
             let truth = Truth::of(robot, at).expect("a safe pose");
             let smallest = truth.margins.into_iter().fold(f64::INFINITY, f64::min);
-            let error = sine(Clearance::of(robot.firmware(), &pose).smallest()) - smallest;
+            let error = sine(Clearance::of(robot.firmware(), &pose).smallest_margin()) - smallest;
             let largest = truth.bands[..10].iter().copied().fold(0.0, f64::max);
             assert!(error.abs() <= largest, "{name}: {pose:?} is {error} off");
         }

@@ -138,7 +138,7 @@ fn lies_ahead(
         let beyond = held.largest_turn_to(&from) <= pose.largest_turn_to(&from) + 1;
         beyond
             && Clearance::of(firmware, &pose)
-                .hazard(firmware)
+                .first_hazard(firmware)
                 .is_some_and(same)
     })
 }

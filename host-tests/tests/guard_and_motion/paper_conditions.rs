@@ -115,7 +115,7 @@ fn the_papers_condition_misses_the_real_singularity_and_the_guard_does_not() {
 /// Returns the margin that the guard finds too small; `None` if it finds none.
 fn refused_margin(pose: &Pose) -> Option<Margin> {
     let firmware = paper().firmware();
-    match Clearance::of(firmware, pose).hazard(firmware) {
+    match Clearance::of(firmware, pose).first_hazard(firmware) {
         Some(Hazard::Margin { margin, .. }) => Some(margin),
         _ => None,
     }

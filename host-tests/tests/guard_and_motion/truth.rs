@@ -111,7 +111,7 @@ impl Truth {
         let leg = MARGIN_BAND;
         let mut broken = [false; 12];
         for violation in robot.limits().violations(&solution) {
-            broken[index_of(violation.what)] = true;
+            broken[index_of(violation.check)] = true;
         }
         Ok(Self {
             broken,
@@ -272,5 +272,5 @@ pub fn safe_pose(rng: &mut Rng, firmware: &CoreRobot) -> Pose {
 
 /// True if the guard accepts a pose.
 pub fn is_safe(firmware: &CoreRobot, pose: &Pose) -> bool {
-    Clearance::of(firmware, pose).hazard(firmware).is_none()
+    Clearance::of(firmware, pose).first_hazard(firmware).is_none()
 }

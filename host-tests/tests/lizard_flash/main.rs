@@ -14,7 +14,7 @@ use std::sync::LazyLock;
 
 use desk::{BOOT_LOADER_START, Desk, loader};
 use lizard_core::memory::copies::REST_POSE;
-use lizard_core::memory::record::{LENGTH, SIZE};
+use lizard_core::memory::record::{RECORD_BYTES, SIZE};
 use lizard_core::numbers::section::START;
 use lizard_host::firmware::label;
 use lizard_host::sim::frame::servo_pins;
@@ -76,7 +76,7 @@ fn lizard_flash(desk: &Desk, arguments: &[&str]) -> Shell {
 /// Checks that an upload has left the EEPROM alone, except for the rest pose. The firmware itself may write
 /// the rest pose, for example when `lizard` on a slow machine resets the board several times.
 fn assert_kept(desk: &Desk, kept: &[u8; SIZE]) {
-    let rest = usize::from(REST_POSE.0)..usize::from(REST_POSE.0 + LENGTH);
+    let rest = usize::from(REST_POSE.0)..usize::from(REST_POSE.0 + RECORD_BYTES);
     let now = desk.uno.eeprom();
     let changed = |at: &usize| now[*at] != kept[*at] && !rest.contains(at);
     let changes: Vec<usize> = (0..SIZE).filter(changed).collect();

@@ -13,7 +13,7 @@ use lizard_core::numbers::limits::Limits;
 use lizard_core::numbers::robot::Robot;
 use lizard_core::numbers::section::{Damage, Header, MAGIC, Numbers, Region, SPACE, seal};
 use lizard_core::numbers::units::{Sine, Sweep, Width};
-use lizard_core::virtual_board::Running;
+use lizard_core::virtual_board::RunningRobot;
 use lizard_host_tests::rng;
 use lizard_robot::flash;
 
@@ -208,10 +208,10 @@ fn a_gait_that_would_leave_the_travel_is_held_within_it() {
         }
         let robot = Robot::open(flash(&content.section())).expect("nothing is out of range");
         for id in GaitId::all(robot.gait_count()).skip(1) {
-            let mut running = Running::power_on(robot);
+            let mut running = RunningRobot::power_on(robot);
             frames(&mut running, 30);
             let name: String = robot.name(id).map(char::from).collect();
-            assert_eq!(running.say(&name), format!("ok {name}"));
+            assert_eq!(running.send_line(&name), format!("ok {name}"));
             frames(&mut running, 300);
             if running.motion().activity() == Activity::Stop {
                 let hazard = running.motion().hazard();
@@ -276,7 +276,7 @@ fn change(rng: &mut Rng, section: &mut [u8]) {
 /// turns no servo beyond its travel.
 fn check_motion(rng: &mut Rng, section: &[u8]) {
     let robot = Robot::open(flash(section)).expect("it was accepted");
-    let mut running = Running::power_on(robot);
+    let mut running = RunningRobot::power_on(robot);
     frames(&mut running, 30);
     let gaits: Vec<GaitId> = GaitId::all(robot.gait_count()).collect();
     for _ in 0..8 {
@@ -306,7 +306,7 @@ fn check_motion(rng: &mut Rng, section: &[u8]) {
 }
 
 /// Runs frames and checks that no servo turns beyond its travel.
-fn frames(running: &mut Running, count: u32) {
+fn frames(running: &mut RunningRobot, count: u32) {
     for _ in 0..count {
         let pulses = running.frame();
         running.board.transmitter.text.clear();

@@ -306,7 +306,7 @@ mod tests {
             for action in [Action::Say("walk"), Action::Say("save"), Action::Frames(25)] {
                 let mut world = initial_state.world.clone();
                 _ = world.apply(action);
-                let ram = world.running.board.ram.found(Default::default());
+                let ram = world.running.board.ram.peek_restart(Default::default());
                 _ = write!(text, "{:?} {ram:?}", world.running.main);
             }
         }

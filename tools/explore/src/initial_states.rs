@@ -103,7 +103,7 @@ fn cut_off(robot: &Robot) -> Eeprom {
     set.max = Sweep(robot.reach(Servo::ALL[2]).max.0 / 2);
     settings.set_servo(Servo::ALL[2], set);
     let mut memory = Eeprom::blank();
-    let mut writing = COPIES[0].write();
+    let mut writing = COPIES[0].start_write();
     while writing.step(settings.bytes(), &mut memory) == Progress::InProgress {}
     Eeprom::with(*memory.bytes())
 }

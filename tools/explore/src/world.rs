@@ -6,12 +6,12 @@ mod lines;
 use lizard_core::console::line::GARBLED;
 use lizard_core::control::fault::Fault;
 use lizard_core::memory::copies::{COPIES, REST_POSE};
-use lizard_core::memory::record::{LENGTH, VALID_MARK};
+use lizard_core::memory::record::{RECORD_BYTES, VALID_MARK};
 use lizard_core::memory::restart::{Cause, Restart};
 use lizard_core::numbers::rate::Rate;
 use lizard_core::numbers::robot::Robot;
 use lizard_core::step::Board;
-use lizard_core::virtual_board::{Eeprom, Running, reading};
+use lizard_core::virtual_board::{Eeprom, RunningRobot, compute_reading};
 use lizard_rules::{BrokenRule, Event, MS, Observer, Rule, Time, led};
 
 use crate::action::Action;
@@ -39,7 +39,7 @@ const FRAME: Time = 20 * MS;
 #[derive(Clone, Debug)]
 pub struct World {
     /// The firmware on its board.
-    pub running: Running,
+    pub running: RunningRobot,
     /// The observer, which sees the robot from outside.
     pub observer: Observer,
     now: Time,
@@ -61,7 +61,7 @@ impl World {
         memory.slowness = 4;
         memory.is_timed = true;
         let mut world = Self {
-            running: Running::with(robot, memory, Restart::default()),
+            running: RunningRobot::with_memory(robot, memory, Restart::default()),
             observer: Observer::new(inside::limits(&robot)),
             now: 0,
             sags_when_servos_wake: false,
@@ -82,7 +82,7 @@ impl World {
         fingerprint.add(fingerprint::coarse(&self.observer.coarse()));
         let memory = board.memory.bytes();
         for record in COPIES.map(|copy| copy.0).into_iter().chain([REST_POSE.0]) {
-            let record = &memory[usize::from(record)..][..usize::from(LENGTH)];
+            let record = &memory[usize::from(record)..][..usize::from(RECORD_BYTES)];
             // The firmware never uses the content of an invalid record.
             let used = if record[0] == VALID_MARK {
                 record
@@ -93,9 +93,9 @@ impl World {
                 fingerprint.add(u64::from(*byte));
             }
         }
-        fingerprint.add(fingerprint::coarse(&board.ram.found(None)));
+        fingerprint.add(fingerprint::coarse(&board.ram.peek_restart(None)));
         fingerprint.add(u64::from(board.rate as u8) << 2 | u64::from(self.sender as u8));
-        let truth = board.converter.truth();
+        let truth = board.converter.actual();
         let flags = [
             board.memory.is_worn,
             board.has_boot_loader,
@@ -104,7 +104,7 @@ impl World {
             board.is_stack_intact,
             board.converter.is_complete(),
             board.transmitter.is_held,
-            board.restart().before.is_some(),
+            board.restart().stance_before.is_some(),
             board.unread() > 0,
             board.is_frame_pending(),
             board.closed & 1 << BUTTON != 0,
@@ -137,7 +137,7 @@ impl World {
             Action::LosePower(Some(_)) => board.memory.address_in_write().is_some(),
             Action::SendAt(rate) => rate != self.sender,
             Action::Weak(weak) => weak != self.sags_when_servos_wake,
-            Action::Late => board.late < 3,
+            Action::Late => board.late_edges < 3,
             Action::Stack => board.is_stack_intact,
             Action::Contact(pin, closed) => closed != (board.closed & 1 << pin != 0),
             Action::StopReading(deaf) => deaf != board.transmitter.is_held,
@@ -168,13 +168,13 @@ impl World {
             Action::Stall(ms) => self.stall(ms)?,
             Action::Supply(mv) => {
                 let supplies = self.robot().supplies();
-                let truth = reading(&supplies, u32::from(mv), 0);
+                let truth = compute_reading(&supplies, u32::from(mv), 0);
                 self.running.board.converter.set(truth);
                 self.observe(Event::Supply(u32::from(mv)));
             }
             Action::Weak(weak) => self.sags_when_servos_wake = weak,
             Action::Late => {
-                self.running.board.late += 1;
+                self.running.board.late_edges += 1;
                 self.observe(Event::Fault);
                 self.frame()?;
             }

@@ -43,18 +43,18 @@ impl Assumption {
     pub const ALL: [Self; 6] = [
         Self {
             words: "analog servos that drive in bursts",
-            change: |scene| scene.bursts = true,
+            change: |scene| scene.drives_in_bursts = true,
             ..UNCHANGED
         },
         Self {
             words: "bursts, and a rotor of 5 ms",
             keys: Some(("[servo.A1]", "[servo]\nspin_up_ms = 5.0\n[servo.A1]")),
-            change: |scene| scene.bursts = true,
+            change: |scene| scene.drives_in_bursts = true,
             ..UNCHANGED
         },
         Self {
             words: "legs and links of a fifth of their mass",
-            change: |scene| scene.limbs = 0.2,
+            change: |scene| scene.limb_mass_factor = 0.2,
             ..UNCHANGED
         },
         Self {

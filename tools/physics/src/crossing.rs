@@ -75,9 +75,9 @@ impl Crossing {
         let (sin, cos) = self.heading.to_radians().sin_cos();
         let middle = self.distance + SIZE / 2.0;
         Block {
-            at: [-middle * sin, middle * cos],
+            centre: [-middle * sin, middle * cos],
             size: [SIZE, SIZE, high],
-            turned: self.heading,
+            rotation: self.heading,
         }
     }
 }

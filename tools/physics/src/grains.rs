@@ -137,7 +137,7 @@ fn scene(name: String, assembly: &Assembly, gait: &CheckedGait, ratio: f64) -> S
         name,
         ratio,
         course: Some(Course::of(robot, gait, cycles, 1)),
-        shapes: false,
+        has_shapes: false,
         ..Scene::of(assembly)
     }
 }

@@ -126,11 +126,11 @@ impl Variant {
         let mut scene = Scene {
             name: name.to_owned(),
             course: Some(Course::of(assembly.robot(), gait, 2, 1)),
-            shapes: false,
+            has_shapes: false,
             ..Scene::of(assembly)
         };
         if let Some(pins) = self.pins {
-            (scene.pins, scene.motors.joints.drag) = (pins, 0.0);
+            (scene.pin_friction, scene.motors.joints.drag) = (pins, 0.0);
         }
         scene
     }
@@ -142,7 +142,7 @@ impl Variant {
     pub fn model(&self, gait: &str) -> Displacement {
         let robot = self.robot();
         let gait = robot.gait(gait).expect(gait);
-        gait.driven(robot.ground(), &robot.motors(), 1.0).into()
+        gait.simulate_driven_cycle(robot.ground(), &robot.motors(), 1.0).into()
     }
 
     /// Returns the share by which the model may differ from MuJoCo in a gait.

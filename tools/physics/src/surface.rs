@@ -125,7 +125,7 @@ impl Surface {
         match self {
             Self::Edge(tenths) => floor.blocks.push(crossing.block(mm(tenths))),
             Self::Blocks(tenths) => floor.blocks = strewn_blocks(robot, mm(tenths)),
-            Self::Slope(deg) => floor.rises = direction * f64::from(deg),
+            Self::Slope(deg) => floor.slope = direction * f64::from(deg),
             Self::UnequalFriction => {
                 let side = |[_, left]: [f64; 2]| if left > 0.0 { 0.4 } else { 0.8 };
                 floor.friction = robot.ground().feet.positions([0.0; 4]).map(side);
@@ -164,7 +164,7 @@ impl Surface {
         scene.floor = self.floor(assembly, &crossing, direction);
         if self == Self::NoPad {
             // The foot stands on the head of its screw.
-            scene.long[0] = -assembly.stack().under_head(robot.parts());
+            scene.excess_lengths[0] = -assembly.stack().pad_head_height(robot.parts());
         }
         scene
     }
@@ -196,7 +196,7 @@ fn strewn_blocks(robot: &Robot, high: f64) -> Vec<Block> {
             if feet.into_iter().map(distance).fold(f64::INFINITY, f64::min) > SQUARE {
                 let size = [wide, long, high];
                 let turned = 0.0;
-                blocks.push(Block { at, size, turned });
+                blocks.push(Block { centre: at, size, rotation: turned });
             }
         }
     }

@@ -130,9 +130,9 @@ fn every_foot_is_before_the_edge_at_the_start_and_past_it_at_the_end_but_of_gait
             let block = crossing.block(2.0);
             // The edge as a line: a point on it and the direction across it, computed from the block alone, so
             // that a wrong block is noticed.
-            let (sin, cos) = block.turned.to_radians().sin_cos();
+            let (sin, cos) = block.rotation.to_radians().sin_cos();
             let half = block.size[1] / 2.0;
-            let edge = [block.at[0] + half * sin, block.at[1] - half * cos];
+            let edge = [block.centre[0] + half * sin, block.centre[1] - half * cos];
             let beyond =
                 |[right, ahead]: [f64; 2]| (ahead - edge[1]) * cos - (right - edge[0]) * sin;
             let mut pose = [0.0; 3];

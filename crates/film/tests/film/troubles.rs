@@ -148,7 +148,7 @@ fn a_camera_that_moves_has_to_see_every_tag_of_the_floor() {
     let watched = pushed(Vec::new())
         .watch(TRUE_SIZE)
         .expect("all tags are seen");
-    assert!(watched.sight.moved);
+    assert!(watched.sight.has_camera_moved);
     let measured = watched.measure(&gait, None).expect("it is measured");
     let error = measured.forward.mean - truth(&gait).forward;
     assert!(error.abs() < 0.3, "{:?}", measured.forward);

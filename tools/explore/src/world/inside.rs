@@ -8,7 +8,7 @@ use lizard_core::motion::Activity;
 use lizard_core::numbers::gaits::GaitId;
 use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::robot::Robot;
-use lizard_core::virtual_board::{Eeprom, Running};
+use lizard_core::virtual_board::{Eeprom, RunningRobot};
 use lizard_rules::{Event, Limits, Rule, Time};
 
 use super::{FRAME, Verdict, World, broken};
@@ -42,7 +42,7 @@ pub(super) fn limits(robot: &Robot) -> Limits {
 }
 
 /// Returns a number that is the same for equal states of main.
-fn fingerprint(running: &Running) -> u64 {
+fn fingerprint(running: &RunningRobot) -> u64 {
     fingerprint::coarse(&running.main)
 }
 
@@ -53,7 +53,7 @@ impl World {
         let is_done = text.starts_with("ok ");
         // Main has not seen a late edge yet if its last frame still waits to be played. The
         // edge then stops the robot after the order.
-        let is_late = self.observer.is_unreported() && self.running.board.late > 0;
+        let is_late = self.observer.is_unreported() && self.running.board.late_edges > 0;
         self.order(effect, Some(is_done));
         if is_done && effect == Effect::Calibrates {
             self.observe(Event::Calibrated { is_saved: false });
@@ -128,7 +128,7 @@ impl World {
             };
             let (_, limit) = rest.split_once(" limit ").expect("cal prints it");
             let (limit, _) = limit.split_once(" dir ").expect("it ends there");
-            let answer = later.say(&format!("limit {servo} {limit}"));
+            let answer = later.send_line(&format!("limit {servo} {limit}"));
             if answer.starts_with("err ") {
                 return broken(Rule::Load, answer);
             }
@@ -181,7 +181,7 @@ impl World {
             return Ok(());
         }
         if later.board.started_pulses() != standing || activity != Activity::Gait(GaitId::STAND) {
-            let status = later.say("status");
+            let status = later.send_line("status");
             return broken(Rule::Stands, format!("{answer}, and then {status}"));
         }
         Ok(())
@@ -193,7 +193,7 @@ impl World {
         if later.main.control().activity() != Activity::Stop {
             return broken(
                 Rule::Ends,
-                format!("{answer}, and then {}", later.say("status")),
+                format!("{answer}, and then {}", later.send_line("status")),
             );
         }
         Ok(())
@@ -216,7 +216,7 @@ impl World {
         let is_sent = main_ran && widths.iter().any(|width| *width > 0);
         if is_sent
             && Clearance::of(&robot, motion.pose())
-                .hazard(&robot)
+                .first_hazard(&robot)
                 .is_some()
         {
             return broken(Rule::Guarded, format!("{:?}", motion.pose()));

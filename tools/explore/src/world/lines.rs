@@ -2,7 +2,7 @@
 
 use lizard_core::console::command::{effect, parse};
 use lizard_core::step::Step;
-use lizard_core::virtual_board::{Running, is_final};
+use lizard_core::virtual_board::{RunningRobot, is_final};
 use lizard_rules::{Event, Rule, Time};
 
 use super::{FOUND_AFTER, UNREADABLE, Verdict, World, broken};
@@ -44,7 +44,7 @@ impl World {
         self.running.board.send(&UNREADABLE);
         self.observe(Event::Byte);
         let after = self.settled();
-        let fingerprint = |running: &Running| fingerprint::without_line_counters(&running.main);
+        let fingerprint = |running: &RunningRobot| fingerprint::without_line_counters(&running.main);
         if fingerprint(&after) != fingerprint(&before) {
             return broken(Rule::OtherRate, after.board.transmitter.text);
         }
@@ -76,7 +76,7 @@ impl World {
     }
 
     /// Returns a clone of the robot that has printed all its output.
-    fn settled(&self) -> Running {
+    fn settled(&self) -> RunningRobot {
         let mut settled = self.running.clone();
         settled.board.transmitter.text.clear();
         settled.settle();
@@ -85,13 +85,13 @@ impl World {
 
     /// Judges the answer that the robot is about to print, if it answers at once: the robot's
     /// state must already match that answer.
-    fn predict(&mut self, line: &'static str, before: &Running) -> Verdict {
+    fn predict(&mut self, line: &'static str, before: &RunningRobot) -> Verdict {
         let after = self.settled();
         let text = &after.board.transmitter.text;
         let Some(answer) = text.lines().find(|line| is_final(line)) else {
             return Ok(());
         };
-        let fingerprint = |running: &Running| fingerprint::without_line_counters(&running.main);
+        let fingerprint = |running: &RunningRobot| fingerprint::without_line_counters(&running.main);
         if answer.starts_with("err ")
             && (fingerprint(&after) != fingerprint(before)
                 || after.board.memory.bytes() != before.board.memory.bytes())
