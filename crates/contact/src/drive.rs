@@ -70,7 +70,13 @@ impl Drive {
 
     /// The energy of this leg's lag while its servo is at this sweep, deg. Forces are in units of `force` N;
     /// `max` bounds the torque of a pad on its leg, in those units times mm.
-    pub(crate) fn lag_energy_of_leg(&self, leg: usize, sweep: f64, force: f64, max: f64) -> LagEnergy {
+    pub(crate) fn lag_energy_of_leg(
+        &self,
+        leg: usize,
+        sweep: f64,
+        force: f64,
+        max: f64,
+    ) -> LagEnergy {
         let [lower, upper] = match &self.kind {
             DriveKind::Rigid => [Side::Stop; 2],
             DriveKind::Strut(strut) => strut.sides(leg, sweep, force),

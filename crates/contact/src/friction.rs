@@ -256,7 +256,9 @@ impl Pads {
         let (mut cost, mut gradient, mut hessian) = (0.0, [0.0; 3], [[0.0; 3]; 3]);
         let mut legs = [Row::default(); 4];
         if let Some(Inertia {
-            stiffness, previous_twist: before, ..
+            stiffness,
+            previous_twist: before,
+            ..
         }) = self.body
         {
             for i in 0..3 {

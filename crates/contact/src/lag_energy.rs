@@ -265,7 +265,10 @@ impl LagEnergy {
 
     /// Least and greatest lag that the stops allow, rad.
     pub fn stops(&self) -> [f64; 2] {
-        [-self.play - self.lower.max_lag(), self.play + self.upper.max_lag()]
+        [
+            -self.play - self.lower.max_lag(),
+            self.play + self.upper.max_lag(),
+        ]
     }
 
     /// Largest gain of a torque on this drive: the convex conjugate of the energy, for the proof

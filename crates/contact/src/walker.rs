@@ -59,7 +59,11 @@ impl Slip {
 
     fn add(&mut self, pads: &Pads, displacement: &Displacement) {
         self.loads = pads.load;
-        for (sum, [x, y]) in self.slid_distances.iter_mut().zip(pads.slides(displacement)) {
+        for (sum, [x, y]) in self
+            .slid_distances
+            .iter_mut()
+            .zip(pads.slides(displacement))
+        {
             *sum += x.hypot(y);
         }
     }
@@ -299,13 +303,15 @@ impl Walker {
             ratio: self.ground.ratio * ratio,
             load: std::array::from_fn(|i| loads[i] * load[i]),
             body: None,
-            compliance: (drive.can_lag() || motors.iter().any(Option::is_some)).then(|| Compliance {
-                lag_derivatives: along,
-                previous_lags: lag_before,
-                lag_energy: std::array::from_fn(|i| LagEnergy {
-                    motor: motors[i],
-                    ..drive.lag_energy_of_leg(i, servos[i], grip, max)
-                }),
+            compliance: (drive.can_lag() || motors.iter().any(Option::is_some)).then(|| {
+                Compliance {
+                    lag_derivatives: along,
+                    previous_lags: lag_before,
+                    lag_energy: std::array::from_fn(|i| LagEnergy {
+                        motor: motors[i],
+                        ..drive.lag_energy_of_leg(i, servos[i], grip, max)
+                    }),
+                }
             }),
         }
     }

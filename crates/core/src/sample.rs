@@ -109,7 +109,8 @@ impl Sample {
             servos,
             slew,
         } = measures;
-        let end = |end| SampleFiveBar::new(&lizard.end(end)).expect("couplers that are long enough");
+        let end =
+            |end| SampleFiveBar::new(&lizard.end(end)).expect("couplers that are long enough");
         let side = |side| {
             let slider = lizard.side(side);
             side_of(&slider, limits.stroke_min, limits.stroke_max)
@@ -183,7 +184,9 @@ impl Sample {
 
     /// True if the integer guard accepts the neutral pose.
     pub fn stands_safely(&self) -> bool {
-        Clearance::of(self, &Pose::NEUTRAL).first_hazard(self).is_none()
+        Clearance::of(self, &Pose::NEUTRAL)
+            .first_hazard(self)
+            .is_none()
     }
 
     /// This robot with another hash, in a section with a correct checksum.

@@ -182,7 +182,8 @@ impl VirtualBoard {
                 self.take_over();
             }
             let width = self.playing.0[servo];
-            if !self.are_pulses_ended && self.connected.is_some() && VALID_WIDTHS.contains(&width.0) {
+            if !self.are_pulses_ended && self.connected.is_some() && VALID_WIDTHS.contains(&width.0)
+            {
                 self.started.0[servo] = width;
             }
         }

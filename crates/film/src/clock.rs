@@ -135,7 +135,10 @@ impl Steps {
         let away = |start: f64, period: f64| squares(&self.differences(gait, start, period));
         let longer = LONGER.map(|times| {
             let period = f64::from(times) * gait.period;
-            (self.minimize(period, &[period], away).0 / self.sum_of_squares(), times)
+            (
+                self.minimize(period, &[period], away).0 / self.sum_of_squares(),
+                times,
+            )
         });
         let least = longer.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
         least.unwrap_or((f64::INFINITY, 1))

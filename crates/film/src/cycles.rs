@@ -71,7 +71,8 @@ pub(crate) fn find(path: &[PathPoint], gait: &Gait) -> Result<Cycles, Trouble> {
     if places.len() < 3 {
         return Err(too_short(end - begin, gait));
     }
-    let to_calm = to_calm(walked, &places, calm, period[0], gait).unwrap_or_else(|| gait.place_at(calm));
+    let to_calm =
+        to_calm(walked, &places, calm, period[0], gait).unwrap_or_else(|| gait.place_at(calm));
     let from_calm = path::inverse(to_calm);
     let travel = |pair: &[(f64, Place)]| {
         let cycle = path::of_travel(pair[1].1.seen_from(pair[0].1));
@@ -93,12 +94,18 @@ pub(crate) fn find(path: &[PathPoint], gait: &Gait) -> Result<Cycles, Trouble> {
 
 /// Computes the movements while the robot walks evenly; fails if they are too few for a comparison with a gait.
 pub(crate) fn steps(path: &[PathPoint], gait: &Gait) -> Result<Steps, Trouble> {
-    Ok(Steps::from_path(select_even_walk(path, gait)?.0, gait.period))
+    Ok(Steps::from_path(
+        select_even_walk(path, gait)?.0,
+        gait.period,
+    ))
 }
 
 /// Selects the part of a path on which the robot walks evenly; returns it with the times of its beginning and end,
 /// s.
-fn select_even_walk<'a>(path: &'a [PathPoint], gait: &Gait) -> Result<(&'a [PathPoint], [f64; 2]), Trouble> {
+fn select_even_walk<'a>(
+    path: &'a [PathPoint],
+    gait: &Gait,
+) -> Result<(&'a [PathPoint], [f64; 2]), Trouble> {
     let [begin, end] = find_even_walk(path, gait)?;
     let first = path.partition_point(|seen| seen.seconds < begin);
     let last = path.partition_point(|seen| seen.seconds <= end);

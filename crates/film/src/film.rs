@@ -9,7 +9,7 @@ use crate::scene::{FloorCorners, Measures, Scene, View};
 use crate::sheet::{CODES, DECK_TAG, FLOOR_TAGS};
 use crate::tags::{self, Tag};
 use crate::trouble::Trouble;
-use crate::watched::{Sight, AnalysedFilm};
+use crate::watched::{AnalysedFilm, Sight};
 
 /// Smallest distance of a floor tag's corner from its usual place that shows a moved camera, px.
 const MOVED: f64 = 1.0;

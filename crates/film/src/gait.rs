@@ -69,7 +69,10 @@ impl Gait {
     /// The predicted movement from a phase to a later one.
     pub(crate) fn step(&self, from: f64, to: f64) -> [f64; 3] {
         let whole = from.floor();
-        movement(self.place_at(to - whole).seen_from(self.place_at(from - whole)))
+        movement(
+            self.place_at(to - whole)
+                .seen_from(self.place_at(from - whole)),
+        )
     }
 }
 

@@ -59,5 +59,5 @@ pub use trouble::Trouble;
 pub use turns::{DeadBand, Jig, Turns};
 pub use turns_trouble::TurnsTrouble;
 pub use walks::rest;
-pub use watched::{Sight, AnalysedFilm};
+pub use watched::{AnalysedFilm, Sight};
 pub use within::Point;

@@ -193,7 +193,10 @@ impl Slide {
             let at = moments.partition_point(|moment| moment.seconds < seconds);
             at.min(moments.len() - 1)
         };
-        let (now, before) = (near(begin), near(begin - 2.0 * HALF_AVERAGING_TIME).saturating_sub(1));
+        let (now, before) = (
+            near(begin),
+            near(begin - 2.0 * HALF_AVERAGING_TIME).saturating_sub(1),
+        );
         let tilt = tilts[now].to_degrees();
         let apart = moments[now].seconds - moments[before].seconds;
         let rate = (tilt - tilts[before].to_degrees()) / apart.max(HALF_AVERAGING_TIME);
@@ -251,7 +254,8 @@ fn mean(moments: &[Moment]) -> [f64; 2] {
 fn smooth(moments: &[Moment]) -> Vec<f64> {
     let at = |seconds: f64| moments.partition_point(|moment| moment.seconds < seconds);
     let one = |moment: &Moment| {
-        let near = &moments[at(moment.seconds - HALF_AVERAGING_TIME)..at(moment.seconds + HALF_AVERAGING_TIME)];
+        let near = &moments
+            [at(moment.seconds - HALF_AVERAGING_TIME)..at(moment.seconds + HALF_AVERAGING_TIME)];
         let count = near.len() as f64;
         let (mut time, mut tilt) = (0.0, 0.0);
         for other in near {

@@ -398,6 +398,9 @@ impl Path {
                 error: mean.error.hypot(DEAD_BAND_ERROR),
             }
         });
-        DeadBand { width, largest_ignored_step: still }
+        DeadBand {
+            width,
+            largest_ignored_step: still,
+        }
     }
 }

@@ -44,8 +44,11 @@ pub(crate) fn find_deviations(path: &[PathPoint], cycles: &Cycles, gait: &Gait) 
         let inside = |seen: &&PathPoint| (begin.seconds..end).contains(&seen.seconds);
         for seen in path.iter().filter(inside) {
             let phase = (seen.seconds - begin.seconds) / (end - begin.seconds);
-            let [there, predicted] =
-                [seen.place.seen_from(begin.place), gait.place_at(phase).travel()].map(parts);
+            let [there, predicted] = [
+                seen.place.seen_from(begin.place),
+                gait.place_at(phase).travel(),
+            ]
+            .map(parts);
             offs.push(Deviation {
                 cycle,
                 phase,

@@ -11,7 +11,7 @@ use nalgebra::DMatrix;
 use crate::card::{self, Card};
 use crate::chi_square::percentile_99;
 use crate::key::{KEY_COUNT, KEYS, PLAY, RATIO, TWIST};
-use crate::outcome::{KeyResult, Goodness, Identified, Row, Verdict};
+use crate::outcome::{Goodness, Identified, KeyResult, Row, Verdict};
 use crate::problem::{Problem, Solution, UNKNOWNS, Values, split};
 use crate::trouble::Trouble;
 use crate::way::MeasuredMovement;

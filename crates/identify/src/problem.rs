@@ -242,7 +242,9 @@ impl<'a> Problem<'a> {
             for (there, here) in there.iter_mut().zip(&here) {
                 *there = std::array::from_fn(|i| (here[i] - there[i]) / step);
             }
-            let scaled = self.divide_by_errors(&there, |slope, _| slope).into_flattened();
+            let scaled = self
+                .divide_by_errors(&there, |slope, _| slope)
+                .into_flattened();
             for (row, slope) in scaled.iter().enumerate() {
                 slopes[(row, column)] = *slope;
             }

@@ -2,7 +2,7 @@
 
 use lizard_robot::{Robot, edit};
 
-use crate::outcome::{KeyResult, Identified};
+use crate::outcome::{Identified, KeyResult};
 use crate::trouble::Trouble;
 
 impl Identified {

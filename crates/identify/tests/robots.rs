@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::thread;
 
 use fastrand::Rng;
-use lizard_identify::{KeyResult, Identified, KEYS, MeasuredMovement, Verdict, identify};
+use lizard_identify::{Identified, KEYS, KeyResult, MeasuredMovement, Verdict, identify};
 use lizard_robot::{CheckedGait, Ground, Robot, Travel};
 
 /// Standard error of a measured mean, mm and deg: that of about eight cycles.

@@ -95,7 +95,12 @@ impl Solution {
         for (row, end) in ROWS.into_iter().zip(End::ALL) {
             let ([left, right], bars) = (self.couplers(end), &self.end(end).bars);
             put_entry(&mut k, row, row, (left * bars.coupler_left).rotated_left());
-            put_entry(&mut k, row, row + 1, -(right * bars.coupler_right).rotated_left());
+            put_entry(
+                &mut k,
+                row,
+                row + 1,
+                -(right * bars.coupler_right).rotated_left(),
+            );
         }
         for (row, side) in ROWS.into_iter().skip(2).zip(Side::ALL) {
             let slider = self.side(side);

@@ -148,7 +148,8 @@ fn loop_derivatives(pose: &FiveBarPose, crank_left: Spin, crank_right: Spin) -> 
         right: Spin::new(w3, e3),
         point: Derivative {
             rate: r1.rotated_left() * w1 + r2.rotated_left() * w2,
-            acceleration: end_acceleration(r1, crank_left) + r2.rotated_left() * e2 - r2 * (w2 * w2),
+            acceleration: end_acceleration(r1, crank_left) + r2.rotated_left() * e2
+                - r2 * (w2 * w2),
         },
     }
 }

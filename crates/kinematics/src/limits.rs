@@ -36,7 +36,11 @@ pub struct Violation {
 
 impl fmt::Display for Violation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { check: what, value, limit } = *self;
+        let Self {
+            check: what,
+            value,
+            limit,
+        } = *self;
         // Rounded to the digits that are shown, without the sign of a zero.
         let rounded = |scale: f64| libm::round(value * scale) / scale + 0.0;
         let (thousandths, hundredths) = (rounded(1e3), rounded(100.0));

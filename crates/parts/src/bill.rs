@@ -67,7 +67,11 @@ pub struct Item {
 
 impl Item {
     fn printed(part: &Part) -> Self {
-        let density = if part.rubbery { PAD_DENSITY } else { PRINTED_DENSITY };
+        let density = if part.rubbery {
+            PAD_DENSITY
+        } else {
+            PRINTED_DENSITY
+        };
         let grams = density * part.volume();
         Self {
             hours: Some(HOURS_A_PIECE + HOURS_A_GRAM * grams),
@@ -134,7 +138,10 @@ fn bought(body: &Body, assembly: &Assembly, hold: Option<&SpringEffect>) -> (Str
     let diameter = parts.screw.diameter;
     match body.kind {
         Kind::Printed => (String::new(), PRINTED_DENSITY * volume(&body.prisms)),
-        Kind::Servo => ("servo SG-90 with its horn and screws".to_owned(), SERVO_GRAMS),
+        Kind::Servo => (
+            "servo SG-90 with its horn and screws".to_owned(),
+            SERVO_GRAMS,
+        ),
         Kind::Horn => (String::new(), HORN_GRAMS),
         Kind::Screw(length) | Kind::HexScrew(length) => {
             let head = match body.kind {

@@ -69,7 +69,7 @@ impl SpringEffect {
         let [lever, way, end] = ranges;
         let ground = robot.ground();
         Some(Self {
-            installed: robot.hung(),
+            installed: robot.mounted_spring_length(),
             force: strut.force,
             rate: strut.rate,
             lever,

@@ -77,4 +77,4 @@ pub use part::{Part, PrintToBody};
 pub use price::Price;
 pub use proof::clearance::Clearance;
 pub use proof::{Answer, Clash, FAR_MM, MIN_GAP_MM, NearestPair, Proof, Questions};
-pub use unfit::{Meeting, BuildProblem};
+pub use unfit::{BuildProblem, Meeting};

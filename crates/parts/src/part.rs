@@ -246,7 +246,9 @@ fn are_equal(a: &[Prism], b: &[Prism]) -> bool {
     a.len() == b.len()
         && zip(a, b).all(|(a, b)| {
             let heights = near(a.z[0], b.z[0]) && near(a.z[1], b.z[1]);
-            heights && shapes(&a.filled_shapes, &b.filled_shapes) && shapes(&a.cut_shapes, &b.cut_shapes)
+            heights
+                && shapes(&a.filled_shapes, &b.filled_shapes)
+                && shapes(&a.cut_shapes, &b.cut_shapes)
         })
 }
 

@@ -159,7 +159,7 @@ impl Assembly {
                 parts.height
             ));
         }
-        if drive.strut().is_some() && robot.hung() <= parts.spring.length {
+        if drive.strut().is_some() && robot.mounted_spring_length() <= parts.spring.length {
             return refuse(format!(
                 "leg strut {} is {:.1} mm from screw to screw, but its spring is {:.1} mm long inside its hooks \
                  without load and must be pulled; parts.pivot sets the one, parts.spring.length the other; \

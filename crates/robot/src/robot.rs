@@ -279,7 +279,7 @@ impl Robot {
     }
 
     /// The length, inside its hooks, of a spring mounted in a strut, mm.
-    pub fn hung(&self) -> f64 {
+    pub fn mounted_spring_length(&self) -> f64 {
         measures::mounted_spring_length(self.legs(), self.parts())
     }
 

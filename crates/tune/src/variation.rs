@@ -2,7 +2,7 @@
 
 use fastrand::Rng;
 use lizard_robot::{
-    Body, CheckedGait, Drive, Feet, Ground, DriveKind, Robot, Stance, Strut, Travel, Walker,
+    Body, CheckedGait, Drive, DriveKind, Feet, Ground, Robot, Stance, Strut, Travel, Walker,
 };
 use lizard_twin::{FRAME, ServoModel};
 

@@ -1,6 +1,6 @@
 //! Tests of the twin: the frames of a gait, simulated one by one, move the robot as predicted for the gait.
 
-use lizard_robot::{CheckedGait, Drive, Ground, DriveKind, Place, Robot};
+use lizard_robot::{CheckedGait, Drive, DriveKind, Ground, Place, Robot};
 use lizard_twin::{ServoModel, Tally, Twin, Unloaded};
 
 fn paper() -> Robot {

@@ -104,7 +104,7 @@ fn trace_tags(pins: [u8; 4]) -> Vec<u8> {
 }
 
 /// Returns the widths of each servo's pulses, us, from a trace file with steps of 10 ns.
-fn widths(vcd: &str) -> HashMap<String, Vec<f64>> {
+fn parse_widths(vcd: &str) -> HashMap<String, Vec<f64>> {
     let (mut names, mut rises, mut now) = (HashMap::new(), HashMap::new(), 0.0);
     let mut widths: HashMap<String, Vec<f64>> = HashMap::new();
     for line in vcd.lines() {
@@ -182,7 +182,7 @@ fn the_elf_file_walks_in_debians_simavr() {
     );
     let vcd = fs::read_to_string(folder.join("pins.vcd")).expect("traces");
     assert!(vcd.contains("$timescale 10ns $end"), "{}", &vcd[..80]);
-    let widths = widths(&vcd);
+    let widths = parse_widths(&vcd);
     for (servo, calibration) in robot().firmware().calibration().iter().enumerate() {
         let all = &widths[&format!("A{}", servo + 1)];
         let [smallest, largest] =

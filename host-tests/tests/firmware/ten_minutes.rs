@@ -51,7 +51,7 @@ fn script_of_all_lines(apart: u64) -> Script {
 }
 
 /// Runs a script and returns the recording and the lines that the robot sent.
-fn run(script: &Script, fidelity: Fidelity) -> (Recording, Vec<String>) {
+fn record_script(script: &Script, fidelity: Fidelity) -> (Recording, Vec<String>) {
     let mut uno = Uno::with_image(FirmwareBench::image(), fidelity);
     supplies::connect(&mut uno, robot());
     let mut lines = Vec::new();
@@ -70,7 +70,7 @@ fn run(script: &Script, fidelity: Fidelity) -> (Recording, Vec<String>) {
 fn ten_minutes_of_commands_give_the_same_widths_and_words_on_the_avr_and_here() {
     for (fidelity, apart) in [(Fidelity::DataSheet, 707), (Fidelity::Stock, 1307)] {
         let mut script = script_of_all_lines(apart);
-        let (mut recording, mut lines) = run(&script, fidelity);
+        let (mut recording, mut lines) = record_script(&script, fidelity);
         let first = recording.frames.first;
         let undecided: Vec<usize> =
             core_run::undecided_lines(&recording.received_by_uno, first).collect();
@@ -78,7 +78,7 @@ fn ten_minutes_of_commands_give_the_same_widths_and_words_on_the_avr_and_here() 
             for &line in &undecided {
                 script.steps[line].ms += 1;
             }
-            (recording, lines) = run(&script, fidelity);
+            (recording, lines) = record_script(&script, fidelity);
             let left = core_run::undecided_lines(&recording.received_by_uno, first).count();
             assert_eq!(left, 0, "lines that end at a tick");
         }

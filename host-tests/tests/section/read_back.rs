@@ -306,7 +306,7 @@ const PAIRS: [[usize; 2]; 4] = [[0, 1], [2, 3], [0, 3], [1, 2]];
 
 /// Reads the rows of the four maps: the row servo's sweeps in each row, and the column servo's sweeps that are
 /// certified in this row.
-fn maps(flash: Region<'_>) -> [Vec<[std::ops::RangeInclusive<i32>; 2]>; 4] {
+fn read_maps(flash: Region<'_>) -> [Vec<[std::ops::RangeInclusive<i32>; 2]>; 4] {
     let numbers = numbers(flash);
     let place = numbers.parts[Part::Rows as usize];
     let rows = flash.values::<[i8; 2]>(place.at, place.count);
@@ -349,7 +349,7 @@ fn in_every_certified_cell_the_exact_guard_accepts_the_maps_conditions() {
         let robot = Robot::open(flash).expect("a robot");
         let travel = robot.calibration();
         with_maps += usize::from(numbers(flash).parts[Part::Rows as usize].count > 0);
-        for (pair, map) in maps(flash).into_iter().enumerate() {
+        for (pair, map) in read_maps(flash).into_iter().enumerate() {
             let servos = PAIRS[pair];
             for [row, columns] in map {
                 let cells = (*columns.start()..*columns.end()).step_by(128);
@@ -383,7 +383,7 @@ fn a_pose_in_all_four_maps_is_certified_and_the_guard_accepts_it() {
     for (named, section) in sections() {
         let flash = Region::new(section);
         let robot = Robot::open(flash).expect("a robot");
-        let maps = maps(flash);
+        let maps = read_maps(flash);
         let mut certified = 0;
         for n in 0..20_000 {
             let mut pose = Pose::NEUTRAL;

@@ -15,7 +15,7 @@ use crate::world::World;
 /// An initial state, and the actions that lead to it.
 pub struct InitialState {
     /// The EEPROM contents and the boot loader at power-on, in words.
-    pub with: &'static str,
+    pub conditions: &'static str,
     /// The actions since power-on.
     pub actions: Vec<Action>,
     /// The initial state itself.
@@ -144,7 +144,7 @@ pub fn all(robot: Robot<'static>) -> Vec<InitialState> {
             if actions.iter().all(|action| world.apply(*action).is_ok()) {
                 let actions = actions.to_vec();
                 all.push(InitialState {
-                    with,
+                    conditions: with,
                     actions,
                     world,
                 });

@@ -30,7 +30,7 @@ fn broken(rule: Rule, seen: impl Into<String>) -> Verdict {
 const UNREADABLE: [u8; 40] = [GARBLED; 40];
 
 /// Number of lines within which a robot must find the rate of the sender.
-const FOUND_AFTER: usize = 12;
+const MAX_LINES_TO_FIND_RATE: usize = 12;
 
 /// The cycles of a frame.
 const FRAME: Time = 20 * MS;
@@ -50,7 +50,7 @@ pub struct World {
     /// The last line that was sent, until its answer is known.
     unread: Option<&'static str>,
     /// The rate at which lines are sent.
-    sender: Rate,
+    sender_rate: Rate,
     /// Number of lines whose answers are judged already and not printed yet.
     judged_answers: u8,
 }
@@ -67,7 +67,7 @@ impl World {
             sags_when_servos_wake: false,
             is_late: false,
             unread: None,
-            sender: Rate::Fastest,
+            sender_rate: Rate::Fastest,
             judged_answers: 0,
         };
         world.observe(Event::Supply(5_000));
@@ -78,8 +78,8 @@ impl World {
     /// Returns the number that equal states share.
     pub fn fingerprint(&self) -> u64 {
         let board = &self.running.board;
-        let mut fingerprint = Fingerprint(fingerprint::coarse(&self.running.main));
-        fingerprint.add(fingerprint::coarse(&self.observer.coarse()));
+        let mut fingerprint = Fingerprint(fingerprint::coarse_fingerprint(&self.running.main));
+        fingerprint.add(fingerprint::coarse_fingerprint(&self.observer.coarse()));
         let memory = board.memory.bytes();
         for record in COPIES.map(|copy| copy.0).into_iter().chain([REST_POSE.0]) {
             let record = &memory[usize::from(record)..][..usize::from(RECORD_BYTES)];
@@ -93,8 +93,10 @@ impl World {
                 fingerprint.add(u64::from(*byte));
             }
         }
-        fingerprint.add(fingerprint::coarse(&board.ram.peek_restart(None)));
-        fingerprint.add(u64::from(board.rate as u8) << 2 | u64::from(self.sender as u8));
+        fingerprint.add(fingerprint::coarse_fingerprint(
+            &board.ram.peek_restart(None),
+        ));
+        fingerprint.add(u64::from(board.rate as u8) << 2 | u64::from(self.sender_rate as u8));
         let truth = board.converter.actual();
         let flags = [
             board.memory.is_worn,
@@ -135,7 +137,7 @@ impl World {
             | Action::LosePower(None)
             | Action::Supply(_) => true,
             Action::LosePower(Some(_)) => board.memory.address_in_write().is_some(),
-            Action::SendAt(rate) => rate != self.sender,
+            Action::SendAt(rate) => rate != self.sender_rate,
             Action::Weak(weak) => weak != self.sags_when_servos_wake,
             Action::Late => board.late_edges < 3,
             Action::Stack => board.is_stack_intact,
@@ -151,12 +153,12 @@ impl World {
     pub fn apply(&mut self, action: Action) -> Verdict {
         let was_kept = self.observer.rests() && self.rest_is_kept();
         match action {
-            Action::Say(_) | Action::Noise if self.sender != self.running.board.rate => {
+            Action::Say(_) | Action::Noise if self.sender_rate != self.running.board.rate => {
                 self.say_at_another_rate()?;
             }
             Action::Say(line) => self.say(line, line.as_bytes())?,
             Action::SendAt(rate) => {
-                self.sender = rate;
+                self.sender_rate = rate;
                 self.check_rate_is_found()?;
             }
             Action::Noise => self.say("", &[b'w', b'a', GARBLED, b'k'])?,
@@ -188,7 +190,7 @@ impl World {
                 self.running.lose_power(torn);
                 self.note_restart(Cause::Power);
             }
-            Action::Contact(pin, closed) => self.contact(pin, closed)?,
+            Action::Contact(pin, closed) => self.set_contact(pin, closed)?,
             Action::StopReading(deaf) => self.running.board.transmitter.is_held = deaf,
         }
         let robot_rests = self.running.motion().is_resting();
@@ -267,7 +269,7 @@ impl World {
         if self.running.board.transmitter.is_held && self.running.motion().is_resting() != rested {
             self.predict_boot();
         }
-        self.pulses(true)?;
+        self.judge_pulses(true)?;
         if !was_held && self.running.motion().hazard().is_some() {
             self.observe(Event::Fault);
         }
@@ -303,7 +305,7 @@ impl World {
             if self.pass_time(20) {
                 return self.listen(self.now);
             }
-            self.pulses(false)?;
+            self.judge_pulses(false)?;
         }
         let left = ms % 20;
         if left > 0 {
@@ -314,7 +316,7 @@ impl World {
             if self.pass_time(20 - left) {
                 return self.listen(self.now);
             }
-            self.pulses(false)?;
+            self.judge_pulses(false)?;
         }
         self.listen(self.now - FRAME)
     }

@@ -3,7 +3,7 @@
 
 use lizard_core::console::command::{effect, parse};
 use lizard_core::console::word::Effect;
-use lizard_core::memory::copies::{self, SavedState, REST_POSE};
+use lizard_core::memory::copies::{self, REST_POSE, SavedState};
 use lizard_core::memory::record::Memory;
 use lizard_core::memory::restart::{Cause, Restart};
 use lizard_core::memory::settings::Settings;
@@ -95,7 +95,7 @@ impl Board {
     ///
     /// # Panics
     /// If the robot breaks a rule.
-    pub fn take(&mut self, byte: u8) {
+    pub fn send_byte(&mut self, byte: u8) {
         self.output.clear();
         let mut ended = None;
         match byte {

@@ -41,11 +41,11 @@ pub fn console(data: &[u8]) {
     let mut board = Board::new(robot(), Eeprom::blank());
     for eight in data.chunks(8) {
         for byte in eight {
-            board.take(*byte);
+            board.send_byte(*byte);
         }
         board.frame();
     }
-    board.take(b'\n');
+    board.send_byte(b'\n');
     board.assert_memory_is_right();
 }
 
@@ -85,7 +85,7 @@ pub fn memory(data: &[u8]) {
         "nobody saved"
     );
     for byte in b"status\nstand\n" {
-        board.take(*byte);
+        board.send_byte(*byte);
     }
     for _ in 0..50 {
         board.frame();

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use lizard_robot::{Drive, Ground, DriveKind, Robot, Stance};
+use lizard_robot::{Drive, DriveKind, Ground, Robot, Stance};
 
 /// The drive of the legs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -10,8 +10,8 @@ use serde::Deserialize;
 use tempfile::TempDir;
 
 use crate::case::{Case, Legs};
+use crate::crate_folder;
 use crate::figures::Displacement;
-use crate::here;
 
 /// The reason why MuJoCo gives no answer.
 #[derive(Debug, thiserror::Error)]
@@ -109,8 +109,8 @@ impl Jobs {
     /// # Errors
     /// Fails if Python does not start.
     pub fn start(self) -> Result<RunningJudge, MujocoError> {
-        let judge = Command::new(here().join("../../target/physics/bin/python"))
-            .arg(here().join("judge.py"))
+        let judge = Command::new(crate_folder().join("../../target/physics/bin/python"))
+            .arg(crate_folder().join("judge.py"))
             .arg(self.folder.path())
             .stdout(Stdio::piped())
             .spawn()

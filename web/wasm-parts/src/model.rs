@@ -2,7 +2,7 @@
 
 use lizard_kinematics::Vector;
 use lizard_parts::{
-    Assembly, Bill, File, Meeting, Mount, Part, Placement, PrintToBody, Step, BuildProblem, coupon,
+    Assembly, Bill, BuildProblem, File, Meeting, Mount, Part, Placement, PrintToBody, Step, coupon,
     papers, part_files, steps,
 };
 use lizard_robot::Robot;
@@ -205,7 +205,10 @@ impl Model {
                 let angle = angles[servo] - FORWARD[servo] * lag[servo];
                 (angle, plans[servo].at(angles[servo], angle))
             };
-            let Placement { origin: at, x_axis: turn } = match mount {
+            let Placement {
+                origin: at,
+                x_axis: turn,
+            } = match mount {
                 Mount::Crank(servo) | Mount::Follower(servo) => Placement {
                     x_axis: Vector::direction(leg(servo).0),
                     ..as_led
@@ -289,7 +292,10 @@ fn matrix(motion: Option<PrintToBody>) -> [f64; 16] {
         lift,
         frame,
     } = motion.unwrap_or(as_it_lies);
-    let Placement { origin: at, x_axis: turn } = frame;
+    let Placement {
+        origin: at,
+        x_axis: turn,
+    } = frame;
     let over = if flipped { -1.0 } else { 1.0 };
     let across = turn.rotated_left() * over;
     [

@@ -1,6 +1,6 @@
 //! The values of the page's sliders: floor, mass, feet, and leg drive.
 
-use lizard_robot::{Body, Drive, Ground, DriveKind, Robot, Stance};
+use lizard_robot::{Body, Drive, DriveKind, Ground, Robot, Stance};
 use serde::{Deserialize, Serialize};
 use tsify::Tsify;
 

@@ -59,7 +59,8 @@ fn certificate(pads: &Pads, displacement: &Displacement) -> ([f64; 3], f64) {
         work += along(pads.swing[i]);
         if let Some(compliance) = pads.compliance {
             let torque = along(compliance.lag_derivatives[i]);
-            work += torque * compliance.previous_lags[i] - compliance.lag_energy[i].conjugate(torque);
+            work +=
+                torque * compliance.previous_lags[i] - compliance.lag_energy[i].conjugate(torque);
         }
         net[0] += force[0];
         net[1] += force[1];

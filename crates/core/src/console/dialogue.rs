@@ -8,7 +8,7 @@ use crate::console::answer::{Answer, Counters};
 use crate::console::command::{self, Command, Misread};
 use crate::console::digits;
 use crate::console::finder::RateFinder;
-use crate::console::line::{LineEnd, GARBLED, Line};
+use crate::console::line::{GARBLED, Line, LineEnd};
 use crate::console::output::Output;
 use crate::console::print;
 use crate::console::refusal;

@@ -258,7 +258,10 @@ struct PackedString {
 }
 
 impl PackedString {
-    const NONE: Self = Self { at: 0, nibbles_left: 0 };
+    const NONE: Self = Self {
+        at: 0,
+        nibbles_left: 0,
+    };
 
     /// All nibbles of a message or a phrase.
     #[inline(never)]

@@ -17,7 +17,7 @@ use crate::control::supervisor::{
 };
 use crate::control::supply::Voltage;
 use crate::guard::hazard::Hazard;
-use crate::memory::copies::{self, SavedState, REST_POSE};
+use crate::memory::copies::{self, REST_POSE, SavedState};
 use crate::memory::record::{Memory, Writing};
 use crate::memory::restart::{Cause, Restart, Stance};
 use crate::memory::settings::{Boot, Settings};
@@ -236,7 +236,9 @@ impl Control {
     /// The voltage of the supply, the chip's or the servos' rail, that restricts the robot more.
     #[inline(never)]
     pub fn voltage(&self) -> Voltage {
-        self.safety.supply().worst_voltage(&self.motion.robot().supplies())
+        self.safety
+            .supply()
+            .worst_voltage(&self.motion.robot().supplies())
     }
 
     /// The present activity: the running routine, unless it rests; otherwise the motion's.

@@ -204,8 +204,8 @@ impl Supply {
             self.frames_at_other_level = 0;
             return false;
         }
-        let is_same_direction =
-            self.frames_at_other_level > 0 && (self.nearest_other_level > self.level) == (level > self.level);
+        let is_same_direction = self.frames_at_other_level > 0
+            && (self.nearest_other_level > self.level) == (level > self.level);
         self.nearest_other_level = match is_same_direction {
             false => level,
             true if level > self.level => level.min(self.nearest_other_level),

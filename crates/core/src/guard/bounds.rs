@@ -230,7 +230,11 @@ pub struct EndErrors {
 impl EndErrors {
     /// The errors for true bars, the integers made of them, and crank angles in the five-bar's own frame, deg. If
     /// the loop does not close, `type2` is the largest margin that the integers may compute.
-    pub fn of(bars: &kinematics::FiveBar, integers: impl Into<RoundedBars>, angles: [f64; 2]) -> Self {
+    pub fn of(
+        bars: &kinematics::FiveBar,
+        integers: impl Into<RoundedBars>,
+        angles: [f64; 2],
+    ) -> Self {
         let [left, right] = angles.map(Vector::direction);
         let tip = |crank: f64, of: Vector| [crank * of.x, crank * of.y];
         let (l, r) = (tip(bars.crank_left, left), tip(bars.crank_right, right));

@@ -10,7 +10,7 @@
 //! | 128 | pose of the last `rest`: settings whose trims are the pose's sweeps |
 
 use crate::memory::record::{Address, CONTENT_BYTES, Memory, RecordState, Writing};
-use crate::memory::settings::{Settings, SAVE_NUMBER};
+use crate::memory::settings::{SAVE_NUMBER, Settings};
 use crate::numbers::pose::Pose;
 use crate::numbers::robot::Robot;
 

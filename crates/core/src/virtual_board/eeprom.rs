@@ -84,7 +84,10 @@ impl Eeprom {
 
     /// Lets a millisecond pass.
     pub(super) fn pass_time(&mut self) {
-        let busy = self.remaining_delay.get().saturating_sub(u16::from(self.is_timed));
+        let busy = self
+            .remaining_delay
+            .get()
+            .saturating_sub(u16::from(self.is_timed));
         self.remaining_delay.set(busy);
         if busy == 0 {
             self.address_in_write.set(None);
@@ -121,12 +124,20 @@ impl Memory for Eeprom {
     }
 
     fn read(&self, address: u16) -> u8 {
-        assert_eq!(self.remaining_delay.get(), 0, "read while it is being written");
+        assert_eq!(
+            self.remaining_delay.get(),
+            0,
+            "read while it is being written"
+        );
         self.bytes[usize::from(address)]
     }
 
     fn write(&mut self, address: u16, byte: u8) {
-        assert_eq!(self.remaining_delay.get(), 0, "written while it is being written");
+        assert_eq!(
+            self.remaining_delay.get(),
+            0,
+            "written while it is being written"
+        );
         let before = self.bytes[usize::from(address)];
         assert_ne!(before, byte, "written for nothing");
         self.log.push((address, before, byte));

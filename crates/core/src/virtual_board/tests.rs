@@ -83,7 +83,11 @@ fn a_reset_leaves_the_pose_and_power_takes_it() {
     running.board.send(b"stand\r");
     running.reset(Cause::External);
     assert_eq!(
-        running.board.restart().stance_before.map(|stance| stance.pose),
+        running
+            .board
+            .restart()
+            .stance_before
+            .map(|stance| stance.pose),
         Some(pose)
     );
     assert_eq!(running.board.unread(), 0, "what main had not read is lost");
@@ -139,7 +143,10 @@ fn nothing_is_measured_before_a_whole_measurement_and_each_part_in_its_turn() {
 fn bytes_beyond_what_the_receiver_holds_are_lost_and_counted() {
     let mut board = VirtualBoard::default();
     board.send(&[b'x'; RECEIVE_CAPACITY + 5]);
-    assert_eq!((board.unread(), board.counters().rx_lost), (RECEIVE_CAPACITY, 5));
+    assert_eq!(
+        (board.unread(), board.counters().rx_lost),
+        (RECEIVE_CAPACITY, 5)
+    );
     let mut main = Main::new();
     main.begin(Sample::odd().section(), &mut board);
     while main.step(&mut board) == Step::Worked {}
@@ -204,7 +211,11 @@ fn settings_changed_at_rest_turn_no_servo_faster_than_the_slew_limit() {
         running.run_frames(60);
         let before = *running.motion().sent();
         for servo in 1..=4 {
-            assert!(running.send_line(&format!("trim {servo} 6")).starts_with("ok"));
+            assert!(
+                running
+                    .send_line(&format!("trim {servo} 6"))
+                    .starts_with("ok")
+            );
         }
         if let Some(cause) = reset {
             running.reset(cause);

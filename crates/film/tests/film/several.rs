@@ -1,16 +1,16 @@
 //! Films of several gaits with rests between them.
 
 use fastrand::Rng;
-use lizard_film::{Gait, Likeness, Measured, Trouble, AnalysedFilm, rest};
+use lizard_film::{AnalysedFilm, Gait, Likeness, Measured, Trouble, rest};
 
 use crate::render::Studio;
 use crate::studio::{TRUE_SIZE, film_of, small};
-use crate::walk::{Show, Varies, gait, truth};
+use crate::walk::{Show, Variation, gait, truth};
 
 /// Pictures per second.
 const RATE: f64 = 8.0;
 /// A small variation of the cycles, as real robots have it.
-const VARIES: Varies = Varies {
+const VARIES: Variation = Variation {
     cycle: [0.2, 0.2, 0.004],
     clock: 0.0,
     ruler: 0.0,

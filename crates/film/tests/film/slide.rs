@@ -1,7 +1,7 @@
 //! The accuracy of measurements in films of a robot that slides down a tilted board.
 
 use fastrand::Rng;
-use lizard_film::{Figure, Film, Setup, Slide, SlideTrouble, AnalysedFilm};
+use lizard_film::{AnalysedFilm, Figure, Film, Setup, Slide, SlideTrouble};
 
 use crate::board::{BOARD, Board, studio};
 use crate::render::{Studio, normal};

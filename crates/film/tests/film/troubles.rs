@@ -5,7 +5,7 @@ use lizard_film::{Film, Gait, Measured, Picture, Setup, Trouble};
 
 use crate::render::{Spot, Studio};
 use crate::studio::{TRUE_SIZE, film_of, small};
-use crate::walk::{Varies, Walk, gait, truth};
+use crate::walk::{Variation, Walk, gait, truth};
 
 /// Pictures per second: few suffice, since the tests check only the reason.
 const RATE: f64 = 8.0;
@@ -21,7 +21,7 @@ fn walk(gait: &Gait, cycles: usize) -> Walk {
         gait,
         [start, 0.0, 0.0],
         cycles,
-        Varies::default(),
+        Variation::default(),
         &mut Rng::with_seed(1),
     )
 }

@@ -181,7 +181,10 @@ fn steps_that_move_nothing_show_only_how_wide_the_dead_band_is_at_least() {
     };
     let path = AngleCamera::of_rate(60.0).path(&servo, &mut Rng::with_seed(5));
     let dead_band = Turns::of(&path, JIG).expect("it is measured").dead_band;
-    assert_eq!((dead_band.width, dead_band.largest_ignored_step), (None, 3.0));
+    assert_eq!(
+        (dead_band.width, dead_band.largest_ignored_step),
+        (None, 3.0)
+    );
 }
 
 #[test]

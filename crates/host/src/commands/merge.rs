@@ -148,7 +148,8 @@ impl MergedParts {
         allow(dead_code, reason = "nothing can be spread")
     )]
     fn run<C: Spreads>(self, run: impl FnOnce(C) -> Result<(), Failure>) -> Result<(), Failure> {
-        let mut command: C = serde_json::from_value(self.options).map_err(|_| wrong_parts_failure())?;
+        let mut command: C =
+            serde_json::from_value(self.options).map_err(|_| wrong_parts_failure())?;
         command.spread().set_merged(self.robot, self.found);
         run(command)
     }

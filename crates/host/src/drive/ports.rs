@@ -46,7 +46,9 @@ impl Line {
             chip: chip_description([port.vendor, port.product_id]),
             may_open: port::may_open(&port.name),
             open_in: port::holder(&port.name),
-            name: port.product.map(|name| escape_controls(&name.replace('_', " "))),
+            name: port
+                .product
+                .map(|name| escape_controls(&name.replace('_', " "))),
             port: port.name,
         }
     }
@@ -55,7 +57,9 @@ impl Line {
 /// Description of a chip by its USB numbers, vendor and product; `None` if the chip is not known.
 fn chip_description(ids: [u16; 2]) -> Option<&'static str> {
     Some(match ids {
-        [vendor, 0x0001 | 0x0043 | 0x0243] if find::ARDUINO_VENDOR_IDS.contains(&vendor) => "an Arduino UNO",
+        [vendor, 0x0001 | 0x0043 | 0x0243] if find::ARDUINO_VENDOR_IDS.contains(&vendor) => {
+            "an Arduino UNO"
+        }
         [vendor, _] if find::ARDUINO_VENDOR_IDS.contains(&vendor) => "an Arduino, but no UNO R3",
         [0x1a86, 0x7523 | 0x5523] => "a CH340: a copy of a UNO or a Nano",
         [0x1a86, _] => "a chip of WCH: a copy of a UNO or a Nano",
@@ -135,7 +139,10 @@ mod tests {
             words[1].contains("no name (1a86:7523), a CH340"),
             "{words:?}"
         );
-        assert!(chip_description([0x0483, 0x5740]).is_none(), "another maker's");
+        assert!(
+            chip_description([0x0483, 0x5740]).is_none(),
+            "another maker's"
+        );
     }
 
     #[test]

@@ -12,7 +12,10 @@ const PICTURE_EXTENSIONS: [&str; 3] = ["png", "jpg", "jpeg"];
 ///
 /// # Errors
 /// Fails if the folder cannot be read or has no pictures, or if neither `rate` nor the names give the times.
-pub(super) fn list_pictures(folder: &Path, rate: Option<f64>) -> Result<Vec<(f64, PathBuf)>, Failure> {
+pub(super) fn list_pictures(
+    folder: &Path,
+    rate: Option<f64>,
+) -> Result<Vec<(f64, PathBuf)>, Failure> {
     let cannot = |error: std::io::Error| {
         Failure::Input(format!("cannot read {}: {error}", folder.display()))
     };

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use lizard_identify::{Card, KeyResult, Goodness, Identified, PARTS, Row, Verdict};
+use lizard_identify::{Card, Goodness, Identified, KeyResult, PARTS, Row, Verdict};
 use serde::Serialize;
 
 /// The result, with the field names of `--json`.

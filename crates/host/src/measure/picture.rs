@@ -101,8 +101,18 @@ fn draw_path(group: Group, gait: &GaitReport, top: f64) -> Group {
         let (x, y) = (point.forward.mean, point.left.mean);
         let [ex, ey] = [&point.forward, &point.left].map(|part| ERROR_BAR_ERRORS * part.error);
         group = group
-            .add(line(plot.page_point(x - ex, y), plot.page_point(x + ex, y), MEASURED, 1.0))
-            .add(line(plot.page_point(x, y - ey), plot.page_point(x, y + ey), MEASURED, 1.0));
+            .add(line(
+                plot.page_point(x - ex, y),
+                plot.page_point(x + ex, y),
+                MEASURED,
+                1.0,
+            ))
+            .add(line(
+                plot.page_point(x, y - ey),
+                plot.page_point(x, y + ey),
+                MEASURED,
+                1.0,
+            ));
     }
     group = group.add(plot.curve(&points, MEASURED, 2.0));
     let (begin, end) = (plot.page_point(0.0, 0.0), points[points.len() - 1]);
@@ -147,9 +157,15 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
         if let Some(predicted) = part.predicted {
             group = group.add(bar(0.52, predicted, PREDICTED).set("fill-opacity", 0.6));
         }
-        let [low, high] = [-ERROR_BAR_ERRORS, ERROR_BAR_ERRORS].map(|errors| part.mean + errors * part.error);
+        let [low, high] =
+            [-ERROR_BAR_ERRORS, ERROR_BAR_ERRORS].map(|errors| part.mean + errors * part.error);
         let x = at + 0.34;
-        group = group.add(line(plot.page_point(x, low), plot.page_point(x, high), "black", 1.5));
+        group = group.add(line(
+            plot.page_point(x, low),
+            plot.page_point(x, high),
+            "black",
+            1.5,
+        ));
         for end in [low, high] {
             group = group.add(line(
                 plot.page_point(x - 0.05, end),

@@ -3,7 +3,7 @@
 use std::fmt::{Display, Write as _};
 use std::path::{Path, PathBuf};
 
-use lizard_film::{Figure, Jig, Turns, AnalysedFilm};
+use lizard_film::{AnalysedFilm, Figure, Jig, Turns};
 use lizard_measure::WatchedFilm;
 use lizard_robot::servo::NAMES;
 use lizard_robot::{GRAVITY, Robot, edit};

@@ -187,7 +187,11 @@ fn text(report: &Report) -> String {
     ] {
         let Some(part) = part else { continue };
         let [x, y] = part.point;
-        page += &format!("{name} at ({:.3}, {:.3}) mm\n", round_decimals(x, 3), round_decimals(y, 3));
+        page += &format!(
+            "{name} at ({:.3}, {:.3}) mm\n",
+            round_decimals(x, 3),
+            round_decimals(y, 3)
+        );
         if let Some(reason) = &part.why {
             page += &format!("  {reason}\n\n");
             continue;

@@ -1,7 +1,9 @@
 //! `lizard pose --show singularities`: the matrices K and K*, the factors of det K*, and the turns of the servos to
 //! the nearest singular poses.
 
-use lizard_kinematics::{BlockDeterminants, End, FiveBar, SingularPose, Singularity, Solution, wrap};
+use lizard_kinematics::{
+    BlockDeterminants, End, FiveBar, SingularPose, Singularity, Solution, wrap,
+};
 use lizard_robot::Robot;
 use nalgebra::SMatrix;
 use serde::Serialize;

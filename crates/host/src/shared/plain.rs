@@ -19,7 +19,10 @@ pub fn escape_controls(text: &str) -> String {
 
 /// The text with every control character escaped, except line feeds; the middle of a very long line is omitted.
 pub fn readable_lines(text: &str) -> String {
-    let lines: Vec<String> = text.split('\n').map(|line| shorten(&escape_controls(line))).collect();
+    let lines: Vec<String> = text
+        .split('\n')
+        .map(|line| shorten(&escape_controls(line)))
+        .collect();
     lines.join("\n")
 }
 

@@ -113,7 +113,9 @@ impl RobotFile {
     /// looks for robot.toml in the current folder and the folders above it.
     fn find_source(&self) -> Result<RobotSource, Failure> {
         if let Some(path) = &self.path {
-            let named = BUILT_IN_ROBOTS.iter().find(|(name, _)| path.as_os_str() == *name);
+            let named = BUILT_IN_ROBOTS
+                .iter()
+                .find(|(name, _)| path.as_os_str() == *name);
             return Ok(match named {
                 Some((_, text)) if !path.exists() => RobotSource::BuiltIn(text),
                 _ => RobotSource::File(path.clone()),

@@ -233,14 +233,14 @@ impl SimulatedBoard {
 
     /// Runs the board until a cycle.
     fn run_until(&mut self, cycle: u64) -> Result<(), BoardError> {
-        let resets = self.uno.resets();
+        let resets = self.uno.watchdog_resets();
         match self.uno.run_until_cycle(cycle) {
             State::Alive => {}
             State::Halted => return Err(BoardError::Halted),
             State::Crashed { message, .. } => return Err(BoardError::Crashed(message.clone())),
             State::Off => return Err(BoardError::Off),
         }
-        if self.uno.resets() == resets {
+        if self.uno.watchdog_resets() == resets {
             Ok(())
         } else {
             Err(BoardError::Reset)

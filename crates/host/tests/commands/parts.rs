@@ -96,7 +96,8 @@ fn a_wrong_weight_is_reported_with_the_right_one() {
     let light = write_changed_paper("light.toml", |text| {
         text.replace("mass = 435.0", "mass = 280.0")
     });
-    let summary = |robot: &str| make(&fresh_path("parts-light"), &["--robot", robot]).expect_success();
+    let summary =
+        |robot: &str| make(&fresh_path("parts-light"), &["--robot", robot]).expect_success();
     let light = summary(&light);
     assert!(
         light.contains("The parts weigh 435 g") && light.ends_with("\n[body]\nmass = 435.0\n"),

@@ -12,7 +12,7 @@ use std::process::{Child, Stdio};
 
 use lizard_time_limit::LIMIT;
 
-use fixture::{TerminalSession, Device, Uno, lizard, moving_gait, run, wide_terminal};
+use fixture::{Device, TerminalSession, Uno, lizard, moving_gait, run, wide_terminal};
 
 #[test]
 fn a_script_on_standard_input_gets_the_banner_and_its_answers_in_order() {

@@ -182,7 +182,10 @@ fn crank_directions(
         crank * (1.0 / crank.length())
     });
     // If the products overflow or vanish, no direction of length one is left.
-    if bent.iter().all(|crank| (crank.length_squared() - 1.0).abs() < 1e-9) {
+    if bent
+        .iter()
+        .all(|crank| (crank.length_squared() - 1.0).abs() < 1e-9)
+    {
         Ok(bent)
     } else {
         Err(Fault::NotFinite)

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use lizard_kinematics::{Check, End, Limits, Lizard, Side, Vector};
 use proptest::prelude::*;
 
-use crate::reference::{any_lizard, any_pose, any_solved, cases, cis, meeting};
+use crate::reference::{any_lizard, any_pose, any_solved, cases, circle_intersection, cis};
 
 fn sine_between(a: Vector, b: Vector) -> f64 {
     (a.x * b.y - a.y * b.x) / (a.x.hypot(a.y) * b.x.hypot(b.y))
@@ -25,8 +25,8 @@ fn truth(robot: &Lizard, [t1, t4, t8, t5]: [f64; 4]) -> Option<BTreeMap<&'static
     let (p1, p4) = (a1 + cis(t1) * l.l1, a2 + cis(t4) * l.l4);
     let (p8, p5) = (a3 + cis(t8) * l.l9, a4 + cis(t5) * l.l6);
     // End points: left of the line from p1 to p4, and right of the line from p5 to p8.
-    let head = meeting(p1, l.l2, p4, l.l3)?;
-    let tail = meeting(p8, l.l8, p5, l.l7)?;
+    let head = circle_intersection(p1, l.l2, p4, l.l3)?;
+    let tail = circle_intersection(p8, l.l8, p5, l.l7)?;
     // Slider lengths.
     let left = a1 + cis(t1 + 90.0) * l.l14 - (a4 + cis(t5 - 90.0) * l.l11);
     let right = a2 + cis(t4 - 90.0) * l.l19 - (a3 + cis(t8 + 90.0) * l.l16);

@@ -79,7 +79,9 @@ impl Assembly {
 
     /// True if two bodies may touch: they move together, or they touch by design.
     pub fn may_touch(&self, a: &Body, b: &Body) -> bool {
-        a.mount == b.mount || a.allowed_contacts.contains(&b.name) || b.allowed_contacts.contains(&a.name)
+        a.mount == b.mount
+            || a.allowed_contacts.contains(&b.name)
+            || b.allowed_contacts.contains(&a.name)
     }
 
     /// The placement of a mount's frame at a pose at which no leg lags behind its servo.

@@ -171,7 +171,14 @@ impl<'a> Builder<'a> {
     }
 
     /// Adds a printed ring between two parts on a screw.
-    pub fn add_spacer(&mut self, name: String, mount: Mount, centre: Vector, z: Span, meets: &[&str]) {
+    pub fn add_spacer(
+        &mut self,
+        name: String,
+        mount: Mount,
+        centre: Vector,
+        z: Span,
+        meets: &[&str],
+    ) {
         let hole = self.hole(centre);
         let ring = Prism::new(
             [Shape::disc(centre, hole.radius + self.parts.wall)],
@@ -222,7 +229,14 @@ impl<'a> Builder<'a> {
 
     /// Adds the screw of a joint on a servo's link. The link's underside holds the screw's
     /// head, which no key can reach once the link is on its servo.
-    pub fn add_held_joint(&mut self, name: &str, mount: Mount, at: Vector, top: f64, meets: &[&str]) {
+    pub fn add_held_joint(
+        &mut self,
+        name: &str,
+        mount: Mount,
+        at: Vector,
+        top: f64,
+        meets: &[&str],
+    ) {
         self.add_bolt(&Bolt {
             nut_z: top + PLAY,
             meets,

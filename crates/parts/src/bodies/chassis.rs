@@ -83,7 +83,12 @@ fn seat(builder: &Builder, servo: usize, more: f64) -> Shape {
 /// for its screws.
 fn cutouts(builder: &Builder, servo: usize) -> Vec<Shape> {
     let (parts, outward) = (builder.parts, End::of_servo(servo).sign());
-    let notch = leads::notch(&parts.servo, case_middle(builder, servo), parts.fit, outward);
+    let notch = leads::notch(
+        &parts.servo,
+        case_middle(builder, servo),
+        parts.fit,
+        outward,
+    );
     let mut cut = vec![opening(builder, servo, parts.fit), notch];
     cut.extend(flange_holes(builder, servo).map(|at| Shape::disc(at, PILOT_RADIUS)));
     cut
@@ -177,7 +182,11 @@ fn add_case(builder: &mut Builder, servo: usize) {
     let layer =
         |add: Vec<Shape>, low: f64, high: f64| Prism::solid(add, [bottom + low, bottom + high]);
     let case = opening(builder, servo, 0.0);
-    let flange = Shape::rectangle(case_middle(builder, servo), at(body.width, body.flange), 0.0);
+    let flange = Shape::rectangle(
+        case_middle(builder, servo),
+        at(body.width, body.flange),
+        0.0,
+    );
     let gears = vec![
         Shape::disc(shaft, body.width / 2.0 - 0.05),
         Shape::bar(shaft, shaft + inward(servo) * body.shaft, 3.0),

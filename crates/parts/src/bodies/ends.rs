@@ -14,7 +14,10 @@ pub fn add(builder: &mut Builder) {
     for end in End::ALL {
         let [left, right] = end.servos();
         let Stack {
-            link, lower_coupler: lower, upper_coupler: upper, ..
+            link,
+            lower_coupler: lower,
+            upper_coupler: upper,
+            ..
         } = builder.stack;
         add_bar(builder, left, lower);
         add_bar(builder, right, upper);

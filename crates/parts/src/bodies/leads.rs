@@ -47,7 +47,8 @@ fn wire_hole_centre(sign: f64) -> Vector {
 /// The holes in plate and deck through which leads and wires go up.
 pub fn holes() -> [Shape; 2] {
     let [across, along] = WIRE_HOLE_SIZE;
-    [1.0, -1.0].map(|sign| Shape::rectangle(wire_hole_centre(sign), Vector::new(across, along), 1.0))
+    [1.0, -1.0]
+        .map(|sign| Shape::rectangle(wire_hole_centre(sign), Vector::new(across, along), 1.0))
 }
 
 pub fn add(builder: &mut Builder) {

@@ -210,6 +210,12 @@ fn add_screws(builder: &mut Builder, servo: usize) {
         nut_z: nut,
         length: Some(length),
         meets: &[&builder.strut_name(leg)],
-        ..Bolt::new(&name, crank, anchor, stack.anchor_head_face, Direction::Down)
+        ..Bolt::new(
+            &name,
+            crank,
+            anchor,
+            stack.anchor_head_face,
+            Direction::Down,
+        )
     });
 }

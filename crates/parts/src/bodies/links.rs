@@ -163,6 +163,12 @@ fn add_anchor(builder: &mut Builder, servo: usize) {
     builder.add_bolt(&Bolt {
         nut_z: stack.strut[0] - PLAY,
         meets: &[&strut],
-        ..Bolt::new(&screw, mount, position, stack.head_recess[0], Direction::Down)
+        ..Bolt::new(
+            &screw,
+            mount,
+            position,
+            stack.head_recess[0],
+            Direction::Down,
+        )
     });
 }

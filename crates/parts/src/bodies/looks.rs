@@ -9,7 +9,7 @@ use lizard_kinematics::{End, Solution, Vector};
 
 use crate::bodies::builder::{Bolt, Builder, Direction};
 use crate::bodies::names::names;
-use crate::layers::body::{Mount, Prism, end_and_hand, coupler_length};
+use crate::layers::body::{Mount, Prism, coupler_length, end_and_hand};
 use crate::layers::shape::Shape;
 use crate::layers::stack::PLAY;
 
@@ -102,7 +102,14 @@ fn tail(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> Fla
     let [point, straight] = outward(builder, servo, neutral);
     // The left tail link points to the robot's left, the right one to its right.
     let (_, hand) = end_and_hand(servo);
-    let outward = rotate(straight, if hand == 0 { -TAIL_LINK_ANGLE } else { TAIL_LINK_ANGLE });
+    let outward = rotate(
+        straight,
+        if hand == 0 {
+            -TAIL_LINK_ANGLE
+        } else {
+            TAIL_LINK_ANGLE
+        },
+    );
     let half = builder.half_bar();
     let wide = outward.rotated_left() * (half - 1.5);
     let second = point - Vector::new(SECOND_SCREW_DISTANCE, 0.0);
@@ -140,7 +147,10 @@ fn head(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> Fla
 
 /// The position of the second screw in a coupler's frame.
 fn second_screw_position(builder: &Builder, servo: usize) -> Vector {
-    Vector::new(coupler_length(builder.robot, servo) - SECOND_SCREW_DISTANCE, 0.0)
+    Vector::new(
+        coupler_length(builder.robot, servo) - SECOND_SCREW_DISTANCE,
+        0.0,
+    )
 }
 
 fn add_on_upper_link(builder: &mut Builder, servo: usize, name: &str, (add, mut cut): FlatPart) {

@@ -89,7 +89,10 @@ fn add_spring(builder: &mut Builder, servo: usize) {
     let radius = parts.spring.outer / 2.0;
     // Each hook lies around the far side of its screw; the coil is between both hooks.
     let hook = parts.spring.outer - 2.0 * parts.spring.wire;
-    let size = Vector::new(builder.robot.hung() - 2.0 * hook, parts.spring.outer);
+    let size = Vector::new(
+        builder.robot.mounted_spring_length() - 2.0 * hook,
+        parts.spring.outer,
+    );
     let coil = Shape::rectangle(at(length / 2.0), size, 0.0);
     let coil = Prism::solid([coil], [stack.coil - radius, stack.coil + radius]);
     let (spring, mount) = (format!("spring {leg}"), Mount::Strut(servo));

@@ -87,10 +87,13 @@ impl MeshBuilder<'_> {
     fn corner(&mut self, (point, level): (usize, usize)) -> usize {
         let (at, z) = (self.solid.points[point], self.solid.heights[level]);
         let corners = &mut self.mesh.corners;
-        *self.corner_indices.entry((point, level)).or_insert_with(|| {
-            corners.push([at.x, at.y, z]);
-            corners.len() - 1
-        })
+        *self
+            .corner_indices
+            .entry((point, level))
+            .or_insert_with(|| {
+                corners.push([at.x, at.y, z]);
+                corners.len() - 1
+            })
     }
 
     fn divide_edge(&mut self, edge: usize) -> Vec<usize> {

@@ -113,8 +113,12 @@ fn is_open(outline: &Outline, hole: &Loop) -> bool {
 /// The smallest and the largest x and y of a sheet, with the arcs divided finely, mm.
 pub fn extent(sheet: &Sheet) -> [Vector; 2] {
     let lines = sheet.layers.iter().flat_map(|layer| &layer.loops);
-    bounds(lines.flat_map(Loop::sides_with_end_points).flat_map(|(side, to)| {
-        let arc = side.along(to, |_, _| 16);
-        std::iter::once(side.from).chain(arc)
-    }))
+    bounds(
+        lines
+            .flat_map(Loop::sides_with_end_points)
+            .flat_map(|(side, to)| {
+                let arc = side.along(to, |_, _| 16);
+                std::iter::once(side.from).chain(arc)
+            }),
+    )
 }

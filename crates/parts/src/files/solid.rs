@@ -135,9 +135,20 @@ fn find_or_add(points: &mut Vec<Vector>, point: Vector) -> usize {
 
 impl SolidBuilder {
     /// Divides each side of an outline into pieces at its intersections with another outline.
-    fn split_outline(&mut self, level: usize, outline: &Outline, other: &Outline) -> Vec<Vec<Piece>> {
-        let others: Vec<_> = other.loops().flat_map(Loop::sides_with_end_points).collect();
-        let sides: Vec<_> = outline.loops().flat_map(Loop::sides_with_end_points).collect();
+    fn split_outline(
+        &mut self,
+        level: usize,
+        outline: &Outline,
+        other: &Outline,
+    ) -> Vec<Vec<Piece>> {
+        let others: Vec<_> = other
+            .loops()
+            .flat_map(Loop::sides_with_end_points)
+            .collect();
+        let sides: Vec<_> = outline
+            .loops()
+            .flat_map(Loop::sides_with_end_points)
+            .collect();
         sides
             .into_iter()
             .map(|(side, to)| {
@@ -146,7 +157,8 @@ impl SolidBuilder {
                     add_intersections(side, to, *across, *end, &mut cuts);
                 }
                 let points = &mut self.solid.points;
-                let progress_and_index = |cut| (position_along(side, to, cut), find_or_add(points, cut));
+                let progress_and_index =
+                    |cut| (position_along(side, to, cut), find_or_add(points, cut));
                 let mut along: Vec<(f64, usize)> =
                     cuts.into_iter().map(progress_and_index).collect();
                 along[0].0 = 0.0;
@@ -363,7 +375,13 @@ fn bulge_of(angle: f64, like: f64) -> f64 {
 }
 
 /// Adds the points in which two sides intersect, or between which they overlap.
-fn add_intersections(a: Segment, a_end: Vector, b: Segment, b_end: Vector, meetings: &mut Vec<Vector>) {
+fn add_intersections(
+    a: Segment,
+    a_end: Vector,
+    b: Segment,
+    b_end: Vector,
+    meetings: &mut Vec<Vector>,
+) {
     let end = |position: Vector| PlineVertex::new(position.x, position.y, 0.0);
     let points = match pline_seg_intr(
         a.vertex(),

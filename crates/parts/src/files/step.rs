@@ -56,7 +56,12 @@ impl StepWriter {
     }
 
     fn add_triple(&mut self, kind: &str, [x, y, z]: [f64; 3]) -> usize {
-        self.add(&format!("{kind}('',({},{},{}))", format_real(x), format_real(y), format_real(z)))
+        self.add(&format!(
+            "{kind}('',({},{},{}))",
+            format_real(x),
+            format_real(y),
+            format_real(z)
+        ))
     }
 
     /// A frame by its origin, its z axis and its x axis.
@@ -151,7 +156,8 @@ impl StepWriter {
                 // down.
                 let narrows = radius > above;
                 let up = if narrows { -1.0 } else { 1.0 };
-                let frame = self.add_frame([centre.x, centre.y, low], [0.0, 0.0, up], [1.0, 0.0, 0.0]);
+                let frame =
+                    self.add_frame([centre.x, centre.y, low], [0.0, 0.0, up], [1.0, 0.0, 0.0]);
                 let angle = libm::atan((above - radius).abs() / (high - low));
                 let (radius, angle) = (format_real(radius), format_real(angle));
                 let cone = format!("CONICAL_SURFACE('',#{frame},{radius},{angle})");
@@ -166,8 +172,8 @@ impl StepWriter {
                 }
                 None => {
                     let along = (end - side.from) * (1.0 / (end - side.from).length());
-                    let [at, out, along] =
-                        [side.from, along.rotated_right(), along].map(|point| [point.x, point.y, 0.0]);
+                    let [at, out, along] = [side.from, along.rotated_right(), along]
+                        .map(|point| [point.x, point.y, 0.0]);
                     let frame = self.add_frame(at, out, along);
                     (self.add(&format!("PLANE('',#{frame})")), true)
                 }

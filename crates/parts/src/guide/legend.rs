@@ -68,7 +68,9 @@ pub fn names(
         let (Some(name), Some(prism)) = (display_name(body, parts), body.prisms.last()) else {
             continue;
         };
-        let at = assembly.place(body.mount, pose).map(prism.filled_shapes[0].middle());
+        let at = assembly
+            .place(body.mount, pose)
+            .map(prism.filled_shapes[0].middle());
         let distance = (at - Vector::new(-60.0, 80.0)).length();
         let label = Label {
             at,

@@ -16,7 +16,11 @@ use crate::unfit::BuildProblem;
 ///
 /// # Panics
 /// Never: texts and numbers can always be written as JSON.
-pub fn papers(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<File>, BuildProblem> {
+pub fn papers(
+    assembly: &Assembly,
+    bill: &Bill,
+    pose: &Solution,
+) -> Result<Vec<File>, BuildProblem> {
     let list = serde_json::to_string_pretty(bill).expect("texts and numbers");
     let mut files = vec![File::text("bill.json".to_owned(), list + "\n")];
     files.extend(guide(assembly, bill, pose)?);

@@ -161,15 +161,18 @@ pub fn picture(
         }
         for layer in present() {
             if layer.z[1] < high + 1e-6 && !layer.loops.is_empty() {
-                let page =
-                    |line: &Vec<Vector>| line.iter().map(|point| eye.project(*point, high)).collect();
+                let page = |line: &Vec<Vector>| {
+                    line.iter().map(|point| eye.project(*point, high)).collect()
+                };
                 let loops: Vec<Trail> = layer.loops.iter().map(page).collect();
                 ink.polygon(&loops, layer.colour, true);
             }
         }
     }
     // The frame is around all bodies, or in a close view around those that are not grey.
-    let framed = layers.iter().filter(|layer| !view.is_close_up || !layer.grey);
+    let framed = layers
+        .iter()
+        .filter(|layer| !view.is_close_up || !layer.grey);
     let points = framed.flat_map(|layer| {
         let all = layer.loops.iter().flatten();
         all.flat_map(|point| layer.z.map(|z| eye.project(*point, z)))
@@ -204,7 +207,12 @@ fn slices(layers: &mut [Layer]) -> Vec<f64> {
 
 fn layers(assembly: &Assembly, drawn: &[PictureBody], pose: &Solution) -> Vec<Layer> {
     let mut layers = Vec::new();
-    for PictureBody { body, lift, is_grey: grey } in drawn {
+    for PictureBody {
+        body,
+        lift,
+        is_grey: grey,
+    } in drawn
+    {
         let place = assembly.place(body.mount, pose);
         let colour = colour(body, *grey);
         for prism in &body.prisms {

@@ -112,7 +112,11 @@ fn print(place: &Placement, body: &Body, part: &Part) -> Print {
     let origin = place.map(frame.origin);
     let turn = place.x_axis * frame.x_axis.x + place.x_axis.rotated_left() * frame.x_axis.y;
     let drill = part.closed_holes().into_iter().map(|at| {
-        let at = if part.is_turned_over { at.mirrored() } else { at };
+        let at = if part.is_turned_over {
+            at.mirrored()
+        } else {
+            at
+        };
         pair(origin + turn * at.x + turn.rotated_left() * at.y)
     });
     Print {

@@ -50,7 +50,8 @@ pub fn strokes(text: &str, position: Vector) -> Vec<Shape> {
         let left = position + Vector::new(DIGIT_PITCH * index as f64, 0.0);
         let point = |(x, y): (f64, f64)| left + Vector::new(x * wide, y * high);
         let bars = lines(digit).iter();
-        strokes.extend(bars.map(|[from, to]| Shape::bar(point(*from), point(*to), LINE_HALF_WIDTH)));
+        strokes
+            .extend(bars.map(|[from, to]| Shape::bar(point(*from), point(*to), LINE_HALF_WIDTH)));
     }
     strokes
 }

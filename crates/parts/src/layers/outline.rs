@@ -56,7 +56,10 @@ impl Outline {
     /// The outline of a layer.
     pub fn of(prism: &Prism) -> Self {
         let (is_outer, gaps) = unite(prism.filled_shapes.iter().map(polyline));
-        let (mut cuts, _) = unite(gaps.into_iter().chain(prism.cut_shapes.iter().map(polyline)));
+        let (mut cuts, _) = unite(
+            gaps.into_iter()
+                .chain(prism.cut_shapes.iter().map(polyline)),
+        );
         let mut pieces = is_outer;
         // Cuts that open a piece change its outer loop; the others are holes.
         cuts.retain(|cut| {

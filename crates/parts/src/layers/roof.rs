@@ -56,7 +56,10 @@ fn split(layer: &Prism, height: f64) -> Vec<Prism> {
     let [low, high] = layer.z;
     match height < low + SAME_HEIGHT_MM || height > high - SAME_HEIGHT_MM {
         true => vec![layer.clone()],
-        false => vec![layer.at_heights([low, height]), layer.at_heights([height, high])],
+        false => vec![
+            layer.at_heights([low, height]),
+            layer.at_heights([height, high]),
+        ],
     }
 }
 

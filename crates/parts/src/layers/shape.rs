@@ -133,7 +133,9 @@ impl Shape {
             }
         }
         if between == 0.0 {
-            let deep = self.max_side_separation(other).max(other.max_side_separation(self));
+            let deep = self
+                .max_side_separation(other)
+                .max(other.max_side_separation(self));
             // Two discs have no sides.
             between = if deep.is_finite() { deep.min(0.0) } else { 0.0 };
         }
@@ -176,7 +178,10 @@ impl Shape {
         let n = self.points.len();
         (0..if n > 1 { n } else { 0 }).map(move |i| {
             let (from, to) = (self.points[i], self.points[(i + 1) % n]);
-            (from, (to - from).rotated_right() * (1.0 / (to - from).length()))
+            (
+                from,
+                (to - from).rotated_right() * (1.0 / (to - from).length()),
+            )
         })
     }
 
@@ -211,7 +216,9 @@ fn segment_distance(a: Vector, b: Vector, c: Vector, d: Vector) -> f64 {
         return 0.0;
     }
     let first = segment_point_distance(a, c, d).min(segment_point_distance(b, c, d));
-    first.min(segment_point_distance(c, a, b)).min(segment_point_distance(d, a, b))
+    first
+        .min(segment_point_distance(c, a, b))
+        .min(segment_point_distance(d, a, b))
 }
 
 /// The distance between a point and a line segment, mm.

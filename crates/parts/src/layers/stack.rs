@@ -137,7 +137,9 @@ impl Stack {
         let bore_low = lower[0] + SLEEVE_WALL_THICKNESS;
         let bore = [bore_low, bore_low + t + 2.0 * parts.fit];
         let rod = [bore[0] + parts.fit, bore[1] - parts.fit];
-        let slider = screw_length(rod[1] + PLAY + screw.nut_height - link[0] - HEX_HEAD_HEIGHT) + link[0] + HEX_HEAD_HEIGHT;
+        let slider = screw_length(rod[1] + PLAY + screw.nut_height - link[0] - HEX_HEAD_HEIGHT)
+            + link[0]
+            + HEX_HEAD_HEIGHT;
         let deck = STANDOFFS
             .into_iter()
             .find(|length| *length >= slider + gap)

@@ -27,7 +27,9 @@ pub(crate) fn cut_joints(assembly: &Assembly, slotted: bool) -> Vec<LoopJoint> {
         all.push(LoopJoint { name, bodies, at });
     };
     for end in End::ALL {
-        let couplers = end.servos().map(|servo| Node::OnMount(Mount::Coupler(servo)));
+        let couplers = end
+            .servos()
+            .map(|servo| Node::OnMount(Mount::Coupler(servo)));
         close(format!("end {end}"), couplers, lizard.end(end).coupler_left);
     }
     for side in Side::ALL {

@@ -59,7 +59,8 @@ impl Inertia {
     pub fn moved(mut self, by: [f64; 3]) -> Self {
         for i in 0..3 {
             for j in 0..3 {
-                self.second_moments[i][j] += by[i] * self.first_moments[j] + self.first_moments[i] * by[j];
+                self.second_moments[i][j] +=
+                    by[i] * self.first_moments[j] + self.first_moments[i] * by[j];
                 self.second_moments[i][j] += self.mass * by[i] * by[j];
             }
         }

@@ -27,7 +27,8 @@ pub(super) fn files(pieces: &[Piece], nodes: &[Node]) -> Vec<File> {
     for &node in nodes {
         for material in materials_of(pieces, node) {
             let mut mesh = Mesh::default();
-            let is_own = |piece: &&Piece| piece.node == node && Material::of(piece.kind) == material;
+            let is_own =
+                |piece: &&Piece| piece.node == node && Material::of(piece.kind) == material;
             for piece in pieces.iter().filter(is_own) {
                 let first = mesh.corners.len();
                 mesh.corners.extend(&piece.mesh.corners);

@@ -45,7 +45,11 @@ use writer::Writer;
 ///
 /// # Errors
 /// Returns [`Unfit::Surface`] for a part whose layers do not make a body.
-pub fn mjcf(assembly: &Assembly, neutral: &Solution, scene: &Scene) -> Result<String, BuildProblem> {
+pub fn mjcf(
+    assembly: &Assembly,
+    neutral: &Solution,
+    scene: &Scene,
+) -> Result<String, BuildProblem> {
     Ok(Pieces::of(assembly, scene)?.mjcf(neutral, scene))
 }
 

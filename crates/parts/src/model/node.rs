@@ -67,11 +67,12 @@ impl Node {
         Some(match self {
             Self::OnMount(Mount::Chassis) => return None,
             Self::OnMount(Mount::Link(servo)) if play => Self::Horn(servo),
-            Self::Horn(_) | Self::OnMount(Mount::Link(_) | Mount::Crank(_) | Mount::Follower(_)) => {
-                chassis
-            }
+            Self::Horn(_)
+            | Self::OnMount(Mount::Link(_) | Mount::Crank(_) | Mount::Follower(_)) => chassis,
             Self::OnMount(Mount::Foot(servo)) => Self::OnMount(Mount::Crank(servo)),
-            Self::OnMount(Mount::Strut(servo) | Mount::Coupler(servo)) => Self::OnMount(Mount::Link(servo)),
+            Self::OnMount(Mount::Strut(servo) | Mount::Coupler(servo)) => {
+                Self::OnMount(Mount::Link(servo))
+            }
             Self::OnMount(Mount::Sleeve(side)) => Self::OnMount(Mount::Link(side.servos()[1])),
             Self::OnMount(Mount::Rod(side)) => Self::OnMount(Mount::Sleeve(side)),
             Self::Pad(servo) => Self::OnMount(Mount::Foot(servo)),

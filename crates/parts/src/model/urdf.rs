@@ -27,10 +27,12 @@ impl Writer<'_> {
         self.xml.open(format!(r#"robot name="{name}""#));
         for Material { name, colour } in Material::ALL {
             self.xml.open(format!(r#"material name="{name}""#));
-            self.xml.write_empty_element(format!(r#"color rgba="{colour}""#));
+            self.xml
+                .write_empty_element(format!(r#"color rgba="{colour}""#));
             self.xml.close();
         }
-        self.xml.write_empty_element(format!(r#"link name="{BASE}""#));
+        self.xml
+            .write_empty_element(format!(r#"link name="{BASE}""#));
         for node in self.nodes() {
             self.write_urdf_link(node, folder);
             self.write_urdf_joint(node);
@@ -61,7 +63,8 @@ impl Writer<'_> {
                 r#"mesh filename="{file}" scale="0.001 0.001 0.001""#
             ));
             self.xml.close();
-            self.xml.write_empty_element(format!(r#"material name="{}""#, look.name));
+            self.xml
+                .write_empty_element(format!(r#"material name="{}""#, look.name));
             self.xml.close();
         }
         if let Node::Pad(servo) = node {
@@ -69,7 +72,8 @@ impl Writer<'_> {
             self.write_origin(self.pad_middle(servo), 0.0);
             self.xml.open("geometry");
             let radius = round(self.assembly.robot().parts().pad.radius * MILLI);
-            self.xml.write_empty_element(format!(r#"sphere radius="{radius}""#));
+            self.xml
+                .write_empty_element(format!(r#"sphere radius="{radius}""#));
             self.xml.close();
             self.xml.close();
         }
@@ -99,7 +103,8 @@ impl Writer<'_> {
                 Freedom::SlidesAlongX => "1 0 0",
                 _ => "0 0 1",
             };
-            self.xml.write_empty_element(format!(r#"axis xyz="{axis}""#));
+            self.xml
+                .write_empty_element(format!(r#"axis xyz="{axis}""#));
             if let Some([smallest, largest]) = range {
                 let (effort, rate) = match self.driving_servo(node) {
                     Some(servo) => {
@@ -131,8 +136,10 @@ impl Writer<'_> {
     fn write_urdf_connection(&mut self, name: &str, kind: &str, parent: &str, child: &str) {
         self.xml
             .open(format!(r#"joint name="{name}" type="{kind}""#));
-        self.xml.write_empty_element(format!(r#"parent link="{parent}""#));
-        self.xml.write_empty_element(format!(r#"child link="{child}""#));
+        self.xml
+            .write_empty_element(format!(r#"parent link="{parent}""#));
+        self.xml
+            .write_empty_element(format!(r#"child link="{child}""#));
     }
 
     fn write_origin(&mut self, at: [f64; 3], turn: f64) {
@@ -148,7 +155,8 @@ impl Writer<'_> {
         let on_second = self.place(second).unmap(point);
         for (number, (node, at)) in [(first, closed.at), (second, on_second)].iter().enumerate() {
             let frame = format!("closing_{}_{}", closed.identifier(), number + 1);
-            self.xml.write_empty_element(format!(r#"link name="{frame}""#));
+            self.xml
+                .write_empty_element(format!(r#"link name="{frame}""#));
             let joint = format!("{frame}_joint");
             self.write_urdf_connection(&joint, "fixed", &node.identifier(), &frame);
             self.write_origin([at.x, at.y, 0.0], 0.0);

@@ -153,7 +153,9 @@ impl Bench<'_> {
         let meets = |shape: &Shape| room.shape.distance(&shape.placed(&place)) < -TOUCH;
         let encloses = |hole: &Shape| room.shape.depth_in(&hole.placed(&place), still) > -TOUCH;
         let mut prisms = body.prisms.iter().filter(|prism| !is_beside(prism.z));
-        prisms.any(|prism| prism.filled_shapes.iter().any(meets) && !prism.cut_shapes.iter().any(encloses))
+        prisms.any(|prism| {
+            prism.filled_shapes.iter().any(meets) && !prism.cut_shapes.iter().any(encloses)
+        })
     }
 
     /// The space that a nut needs on its screw.
@@ -302,8 +304,9 @@ impl Assembly {
         for pose in self.poses_near(neutral) {
             let still = self.blocked(steps, &pose);
             let reached = |obstacle: &mut BlockedScrew| {
-                let is_same_screw =
-                    |other: &BlockedScrew| other.step == obstacle.step && other.screw == obstacle.screw;
+                let is_same_screw = |other: &BlockedScrew| {
+                    other.step == obstacle.step && other.screw == obstacle.screw
+                };
                 !still.iter().any(is_same_screw)
             };
             let angles: [f64; 4] = pose.pose.into();

@@ -92,7 +92,11 @@ fn bench_stage(adds: fn(&Body) -> bool) -> Stage {
 
 fn stage(at: TurningPlace, adds: fn(&Body) -> bool) -> Stage {
     let turns = |_: &Body| false;
-    Stage { turning_place: at, adds, turns }
+    Stage {
+        turning_place: at,
+        adds,
+        turns,
+    }
 }
 
 /// A step with the instructions from `steps.md` below its title.
@@ -275,7 +279,8 @@ fn struts(is_slotted: bool) -> Step {
     let on_leg = robot_stage(|body| {
         matches!(body.mount, Mount::Strut(_)) || body.name.starts_with("screw leg anchor")
     });
-    let on_link = robot_stage(|body| has_name_prefix(body, &["strut ring", "screw anchor", "nut anchor"]));
+    let on_link =
+        robot_stage(|body| has_name_prefix(body, &["strut ring", "screw anchor", "nut anchor"]));
     let title = match is_slotted {
         true => "Struts and springs",
         false => "Struts",

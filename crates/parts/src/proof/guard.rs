@@ -316,10 +316,12 @@ mod tests {
             };
             // Directions: each servo turns to one side, to the other, or not at all.
             for direction_index in 0..81 {
-                let direction = [1, 3, 9, 27].map(|part| f64::from(direction_index / part % 3) - 1.0);
+                let direction =
+                    [1, 3, 9, 27].map(|part| f64::from(direction_index / part % 3) - 1.0);
                 for share in [[1.0; 4], [1.0, 0.4, 0.7, 0.2], [0.2, 0.7, 0.4, 1.0]] {
-                    let at =
-                        |by: f64| ALL.map(|servo| neutral[servo] + by * direction[servo] * share[servo]);
+                    let at = |by: f64| {
+                        ALL.map(|servo| neutral[servo] + by * direction[servo] * share[servo])
+                    };
                     let (mut safe, mut not) = (0.0, 90.0);
                     if broken(at(not)).is_none() {
                         continue;

@@ -199,7 +199,9 @@ impl<'a> Questions<'a> {
     fn answer_within(&self, index: usize, max: u64) -> Answer {
         let mut task = self.tasks[index].clone();
         let pinned = match task.may_touch {
-            true => self.assembly.remove_pinned_pairs(&mut task, &self.joint_poses),
+            true => self
+                .assembly
+                .remove_pinned_pairs(&mut task, &self.joint_poses),
             false => None,
         };
         let nearest = (!task.shape_pairs.is_empty()).then(|| {

@@ -63,7 +63,12 @@ struct Part<const N: usize> {
 
 /// The least distance of a task's pairs of shapes over all poses that the guard accepts, from at most `max`
 /// regions.
-pub fn find_least_distance(assembly: &Assembly, guard: &Guard, task: &Task, max: u64) -> SearchResult {
+pub fn find_least_distance(
+    assembly: &Assembly,
+    guard: &Guard,
+    task: &Task,
+    max: u64,
+) -> SearchResult {
     match task.servos()[..] {
         [] => search(assembly, guard, task, [], max),
         [a] => search(assembly, guard, task, [a], max),
@@ -120,7 +125,12 @@ impl<const N: usize> Search<'_, N> {
         };
         // The part with the least bound comes first. Parts of equal bounds are ordered by their regions, so the order
         // is always the same.
-        let key = |part: &Part<N>| (total_order_key(part.lower_bound), part.region.middle.map(total_order_key));
+        let key = |part: &Part<N>| {
+            (
+                total_order_key(part.lower_bound),
+                part.region.middle.map(total_order_key),
+            )
+        };
         let first = self.bound_region(all_poses, &all).into_iter();
         let mut parts: BTreeMap<_, _> = first.map(|part| (key(&part), part)).collect();
         while let Some((_, part)) = parts.pop_first() {
@@ -242,7 +252,10 @@ fn tighten<const N: usize>(
 }
 
 /// The index of the servo whose range in a region changes a placement most.
-fn most_influential_servo<const N: usize>(bounds: &Placement<Slope<N>>, region: &Region<N>) -> usize {
+fn most_influential_servo<const N: usize>(
+    bounds: &Placement<Slope<N>>,
+    region: &Region<N>,
+) -> usize {
     /// The lever arm by which a rotation is converted into a distance, mm.
     const LEVER_MM: f64 = 30.0;
     let (at, turn) = (bounds.origin, bounds.x_axis * LEVER_MM);

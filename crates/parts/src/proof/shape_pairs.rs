@@ -183,7 +183,10 @@ impl ShapePair {
             within.fold(disc.distance(other), f64::max)
         };
         let (first, second) = (&self.first, &self.second);
-        let (place, around) = (places.first()?, [&self.holes_for_first, &self.holes_for_second]);
+        let (place, around) = (
+            places.first()?,
+            [&self.holes_for_first, &self.holes_for_second],
+        );
         air(first, around[0], &stays)
             .or_else(|| air(second, around[1], &|second, first| stays(first, second)))
             .or_else(|| {

@@ -67,7 +67,10 @@ impl<const N: usize> Slope<N> {
         derivative: impl Fn(Interval, Interval) -> Interval,
     ) -> Self {
         let slope = std::array::from_fn(|i| derivative(self.derivatives[i], other.derivatives[i]));
-        Self { value, derivatives: slope }
+        Self {
+            value,
+            derivatives: slope,
+        }
     }
 }
 

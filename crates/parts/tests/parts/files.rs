@@ -81,7 +81,8 @@ fn a_rigid_strut_is_as_long_as_the_other_from_hole_to_hole_and_within_it() {
             let (inner, outer) = (rigid.z(), slotted.z());
             assert!(outer[0] <= inner[0] && inner[1] <= outer[1], "{name}");
             for prism in &slotted.prisms {
-                let air = rigid.prisms[0].filled_shapes[0].depth_in(&prism.filled_shapes[0], Default::default());
+                let air = rigid.prisms[0].filled_shapes[0]
+                    .depth_in(&prism.filled_shapes[0], Default::default());
                 assert!(air > -1e-9, "{name}: {air}");
             }
         }

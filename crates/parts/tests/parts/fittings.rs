@@ -33,7 +33,10 @@ fn both_products_named_for_a_fitting_go_into_the_room_of_its_body() {
                 continue;
             }
             for body in found {
-                let points = body.prisms.iter().flat_map(|prism| &prism.filled_shapes[0].points);
+                let points = body
+                    .prisms
+                    .iter()
+                    .flat_map(|prism| &prism.filled_shapes[0].points);
                 let range = |of: fn(&lizard_kinematics::Vector) -> f64| {
                     let all = points.clone().map(of);
                     all.clone().fold(f64::MIN, f64::max) - all.fold(f64::MAX, f64::min)
@@ -90,8 +93,14 @@ fn a_radio_module_of_either_common_size_has_a_place() {
     let [place] = bodies(&assembly, Fitting::Radio)[..] else {
         panic!("one place")
     };
-    let xs = place.prisms[0].filled_shapes[0].points.iter().map(|point| point.x);
-    let ys = place.prisms[0].filled_shapes[0].points.iter().map(|point| point.y);
+    let xs = place.prisms[0].filled_shapes[0]
+        .points
+        .iter()
+        .map(|point| point.x);
+    let ys = place.prisms[0].filled_shapes[0]
+        .points
+        .iter()
+        .map(|point| point.y);
     let extent = |of: Vec<f64>| {
         of.iter().copied().fold(f64::MIN, f64::max) - of.iter().copied().fold(f64::MAX, f64::min)
     };

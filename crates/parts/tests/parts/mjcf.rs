@@ -9,7 +9,7 @@ use lizard_robot::servo::{LEGS, NAMES};
 use roxmltree::{Document, Node};
 
 use crate::mjcf_masses::weighed;
-use crate::mjcf_reader::{bodies, child, elements, neutral, numbers, mjcf_with};
+use crate::mjcf_reader::{bodies, child, elements, mjcf_with, neutral, numbers};
 use crate::{GRAIN, ROBOTS, robot_with};
 
 fn robot(name: &str) -> Robot {
@@ -84,7 +84,9 @@ fn each_foot_stands_where_the_contact_model_has_it_and_a_long_one_is_lower() {
 #[test]
 fn pads_of_other_shapes_touch_the_floor_and_light_limbs_leave_the_robots_mass() {
     let before = weighed(&mjcf_with(&robot("paper"), |_| {}));
-    let after = weighed(&mjcf_with(&robot("paper"), |scene| scene.limb_mass_factor = 0.2));
+    let after = weighed(&mjcf_with(&robot("paper"), |scene| {
+        scene.limb_mass_factor = 0.2
+    }));
     assert!((before.0 - after.0).abs() < 1e-3, "{before:?} {after:?}");
     let radius = robot("paper").parts().pad.radius;
     for (pads, count) in [
@@ -132,7 +134,11 @@ fn a_floor_has_its_blocks_its_slope_and_its_grip_on_each_pad() {
     let text = mjcf_with(&robot("paper"), |scene| {
         let (at, size) = ([20.0, 300.0], [10.0, 40.0, 2.0]);
         let turned = 30.0;
-        scene.floor.blocks.push(Block { centre: at, size, rotation: turned });
+        scene.floor.blocks.push(Block {
+            centre: at,
+            size,
+            rotation: turned,
+        });
         scene.floor.slope = 30.0;
         scene.floor.friction = [0.1, 0.2, 0.3, 0.4];
     });

@@ -5,7 +5,7 @@ use lizard_robot::Robot;
 use lizard_robot::servo::LEGS;
 use roxmltree::Document;
 
-use crate::mjcf_reader::{bodies, child, neutral, numbers, mjcf_with};
+use crate::mjcf_reader::{bodies, child, mjcf_with, neutral, numbers};
 use crate::{ROBOTS, robot_with};
 
 /// The mass of all bodies of a MuJoCo file together, g, and their mass centre: forward, left, above the plate, mm.

@@ -9,7 +9,7 @@ use lizard_robot::Robot;
 use lizard_robot::servo::NAMES;
 use roxmltree::{Document, Node};
 
-use crate::mjcf_reader::{Placed, bodies, child, neutral, numbers, mjcf_with};
+use crate::mjcf_reader::{Placed, bodies, child, mjcf_with, neutral, numbers};
 use crate::{ROBOTS, robot_with};
 
 /// The URDF and the SDF file of a robot whose scene is changed by `change`, and the names of their mesh files.
@@ -82,7 +82,9 @@ fn read_urdf(document: &Document) -> BTreeMap<String, ReadBody> {
             link = end(joint, "parent");
         }
         assert_eq!(link, "base_link", "one root");
-        up.iter().rev().fold(WORLD, |frame, six| frame_on(frame, six))
+        up.iter()
+            .rev()
+            .fold(WORLD, |frame, six| frame_on(frame, six))
     };
     let mut read = BTreeMap::new();
     for (name, link) in &links {

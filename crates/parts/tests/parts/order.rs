@@ -2,7 +2,7 @@
 
 use lizard_kinematics::Vector;
 use lizard_parts::{
-    Assembly, Body, Kind, Outline, ScrewOperation, Stage, Step, TurningPlace, BuildProblem, steps,
+    Assembly, Body, BuildProblem, Kind, Outline, ScrewOperation, Stage, Step, TurningPlace, steps,
 };
 
 use crate::{ROBOTS, assembly, neutral, slotted};
@@ -142,7 +142,10 @@ fn parts_that_move_together_are_not_in_one_place() {
     let near = slotted("paper", "").altered(|bodies| {
         let screw = |body: &&mut Body| body.name == "screw standoff 1 above";
         for body in bodies.iter_mut().filter(screw) {
-            let heads = body.prisms.iter_mut().map(|prism| &mut prism.filled_shapes[0]);
+            let heads = body
+                .prisms
+                .iter_mut()
+                .map(|prism| &mut prism.filled_shapes[0]);
             heads.for_each(|shape| shape.points[0].y -= 1.0);
         }
     });
@@ -177,7 +180,9 @@ fn above_a_head_that_can_be_reached_there_is_no_material() {
                 assert!(name == "unequal" && screw.name.starts_with("screw anchor"));
                 continue;
             }
-            let at = assembly.place(screw.mount, &pose).map(high.filled_shapes[0].middle());
+            let at = assembly
+                .place(screw.mount, &pose)
+                .map(high.filled_shapes[0].middle());
             for turn in 0..12 {
                 let rim = at + Vector::direction(30.0 * f64::from(turn)) * 1.99;
                 for up in 1..60 {

@@ -66,7 +66,8 @@ fn a_pad_for_a_strip_lies_within_a_plain_one_and_is_as_high() {
         let mut notched = 0;
         for (plain, marked) in plain.prisms.iter().zip(&marked.prisms) {
             assert_eq!(plain.z, marked.z);
-            let radius = |of: &lizard_parts::Prism, end: usize| of.filled_shapes[0].radius - of.inset[end];
+            let radius =
+                |of: &lizard_parts::Prism, end: usize| of.filled_shapes[0].radius - of.inset[end];
             for end in [0, 1] {
                 let beyond = radius(marked, end) - radius(plain, end);
                 assert!((-0.3..1e-9).contains(&beyond), "{leg}: {beyond}");

@@ -295,7 +295,13 @@ impl<'a> Section<'a> {
     }
 
     /// Returns a key's value if it is in a range, both limits included; refuses it otherwise.
-    fn require_in_range(&self, name: &str, value: f64, range: (f64, f64), unit: &str) -> Checked<f64> {
+    fn require_in_range(
+        &self,
+        name: &str,
+        value: f64,
+        range: (f64, f64),
+        unit: &str,
+    ) -> Checked<f64> {
         match (range.0..=range.1).contains(&value) {
             true => Ok(value),
             false => Err(Fault::range(self.path(name), value, range, unit)),

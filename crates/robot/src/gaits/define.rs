@@ -272,10 +272,11 @@ fn read_path(name: &str, table: &Section, body: &Measures) -> Checked<Gait> {
             x: read_harmonics(&section, "x")?,
             y: read_harmonics(&section, "y")?,
         };
-        let legs = PathLeg::both_servos(body.lizard, body.neutral(), end, &path).map_err(|problem| {
-            let meaning = format!("in \"{name}\" the {end} would not reach its line");
-            Fault::clause(section.key.clone(), problem).meaning(meaning)
-        })?;
+        let legs =
+            PathLeg::both_servos(body.lizard, body.neutral(), end, &path).map_err(|problem| {
+                let meaning = format!("in \"{name}\" the {end} would not reach its line");
+                Fault::clause(section.key.clone(), problem).meaning(meaning)
+            })?;
         for (servo, leg) in legs {
             strides[servo] = Stride {
                 waveform: Waveform::Path(Box::new(leg)),

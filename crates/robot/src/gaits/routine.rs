@@ -70,7 +70,11 @@ impl Routine {
 }
 
 /// Reads the routines in the order of the file, for a robot with these gaits.
-pub(crate) fn read_routines(root: &Section, gaits: &[&str], inputs: &Inputs) -> Checked<Vec<Routine>> {
+pub(crate) fn read_routines(
+    root: &Section,
+    gaits: &[&str],
+    inputs: &Inputs,
+) -> Checked<Vec<Routine>> {
     if !root.has("routine") {
         return Ok(Vec::new());
     }
@@ -156,7 +160,9 @@ fn parse_records(
 ) -> Result<Vec<Step>, String> {
     let words: Vec<&str> = text.split_whitespace().collect();
     let until = |name: &str| {
-        let input = inputs.find_input(name).ok_or_else(|| missing_input_message(name))?;
+        let input = inputs
+            .find_input(name)
+            .ok_or_else(|| missing_input_message(name))?;
         Ok::<_, String>(Step {
             kind: Step::UNTIL,
             gait: input.byte(),

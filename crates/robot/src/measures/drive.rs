@@ -10,7 +10,10 @@ use crate::measures::strut;
 const TABLE: &str = "drive";
 const KEYS: [&str; 4] = ["kind", "play", "force", "rate"];
 /// The kinds of drive, with the keys that each has in addition to `kind` and `play`.
-const KINDS: [(&str, &[&str]); 2] = [(DriveKind::WORDS[0], &[]), (DriveKind::WORDS[1], &["force", "rate"])];
+const KINDS: [(&str, &[&str]); 2] = [
+    (DriveKind::WORDS[0], &[]),
+    (DriveKind::WORDS[1], &["force", "rate"]),
+];
 
 /// Reads `[leg.drive]`. If it is left out, the legs are rigid.
 pub(crate) fn read(

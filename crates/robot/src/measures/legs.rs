@@ -110,7 +110,9 @@ impl LegPlan {
         LegPlace {
             pivots,
             joints,
-            foot: joints[0] + self.coupler_direction * self.foot.x + self.coupler_direction.rotated_left() * self.foot.y,
+            foot: joints[0]
+                + self.coupler_direction * self.foot.x
+                + self.coupler_direction.rotated_left() * self.foot.y,
             strut: [
                 self.shaft + turned(servo, self.anchor),
                 self.crank_pivot + turned(leg, self.anchor),
@@ -176,10 +178,15 @@ mod tests {
     fn the_papers_legs_are_pivoted_beside_their_servos() {
         let near = |a: Vector, x: f64, y: f64| (a - Vector::new(x, y)).length() < 1e-9;
         let right = robot("paper").legs()[1];
-        assert!(near(right.crank_pivot, 10.0 + 28.5, 67.5 - 10.0), "{right:?}");
+        assert!(
+            near(right.crank_pivot, 10.0 + 28.5, 67.5 - 10.0),
+            "{right:?}"
+        );
         // The ground link: 50 mm long, and turned by 41.41 deg from straight to the side toward the middle.
         let (across, back) = (37.5, 50.0 * 0.4375f64.sqrt());
-        assert!((right.follower_pivot - right.crank_pivot - Vector::new(across, -back)).length() < 1e-4);
+        assert!(
+            (right.follower_pivot - right.crank_pivot - Vector::new(across, -back)).length() < 1e-4
+        );
         let left = robot("paper").legs()[0];
         assert!(
             near(left.crank_pivot, -right.crank_pivot.x, right.crank_pivot.y),

@@ -226,7 +226,13 @@ fn read_leg(root: &Section) -> Checked<(Leg, Hips, f64)> {
 }
 
 /// Refuses the `value` of a key that differs from the value of the key `other`.
-fn require_equal(key: &str, value: f64, other: &str, other_value: f64, reason: &str) -> Checked<()> {
+fn require_equal(
+    key: &str,
+    value: f64,
+    other: &str,
+    other_value: f64,
+    reason: &str,
+) -> Checked<()> {
     if value == other_value {
         return Ok(());
     }

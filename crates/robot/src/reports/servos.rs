@@ -131,5 +131,8 @@ fn cell(Cell { line, movement }: &Cell) -> String {
         Some(turn) if turn.abs() < 0.05 => String::new(),
         turn => format_part(turn, 1),
     };
-    format!("{line:>9.2}{:>7}{turn:>6}", format_part(movement.forward, 1))
+    format!(
+        "{line:>9.2}{:>7}{turn:>6}",
+        format_part(movement.forward, 1)
+    )
 }

@@ -1,7 +1,7 @@
 //! Comparison of the tables in docs/gaits.md, docs/limits.md and docs/twin.md with freshly computed tables.
 
 use lizard_robot::{
-    Assumptions, Drive, Effort, Ground, HIGH_LINE_SHARE, DriveKind, Report, Robot, Sensitivity,
+    Assumptions, Drive, DriveKind, Effort, Ground, HIGH_LINE_SHARE, Report, Robot, Sensitivity,
     ServoTable, SimulatedCycle,
 };
 

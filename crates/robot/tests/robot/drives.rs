@@ -1,7 +1,7 @@
 //! The drive of a leg: struts that yield in one direction, and play. The expected figures come from a separate
 //! implementation of the same model.
 
-use lizard_robot::{Body, Drive, Ground, DriveKind, Report, SpringCost, Walker};
+use lizard_robot::{Body, Drive, DriveKind, Ground, Report, SpringCost, Walker};
 
 use crate::{STUDIED, cycle_movement, gait, paper, paper_with};
 
@@ -144,7 +144,7 @@ fn the_table_of_a_drive_makes_the_ground() {
         coil.strut(),
         Some(&paper().strut_of(&paper().parts().spring))
     );
-    assert!((paper().hung() - 28.5f64.hypot(10.0) - 3.0).abs() < 1e-9);
+    assert!((paper().mounted_spring_length() - 28.5f64.hypot(10.0) - 3.0).abs() < 1e-9);
 }
 
 #[test]

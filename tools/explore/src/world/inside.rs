@@ -43,12 +43,12 @@ pub(super) fn limits(robot: &Robot) -> Limits {
 
 /// Returns a number that is the same for equal states of main.
 fn fingerprint(running: &RunningRobot) -> u64 {
-    fingerprint::coarse(&running.main)
+    fingerprint::coarse_fingerprint(&running.main)
 }
 
 impl World {
     /// Judges an answer to a line.
-    pub(super) fn answer(&mut self, line: &str, text: &str) -> Verdict {
+    pub(super) fn judge_answer(&mut self, line: &str, text: &str) -> Verdict {
         let effect = effect(line, &self.robot());
         let is_done = text.starts_with("ok ");
         // Main has not seen a late edge yet if its last frame still waits to be played. The
@@ -137,7 +137,7 @@ impl World {
     }
 
     /// Closes or opens a contact. Unless a routine runs, checks that the contact has no effect on the robot.
-    pub(super) fn contact(&mut self, pin: u8, closed: bool) -> Verdict {
+    pub(super) fn set_contact(&mut self, pin: u8, closed: bool) -> Verdict {
         let mut without = self.running.clone();
         let others = self.running.board.closed & !(1 << pin);
         self.running.board.closed = others | u32::from(closed) << pin;
@@ -200,7 +200,7 @@ impl World {
     }
 
     /// Judges the pulses of a frame. `main_ran` is false if main was stalled in it.
-    pub(super) fn pulses(&mut self, main_ran: bool) -> Verdict {
+    pub(super) fn judge_pulses(&mut self, main_ran: bool) -> Verdict {
         self.observer.limits.keeps_memory = !self.running.board.memory.is_worn;
         let widths = self.running.board.started_pulses().0.map(|width| width.0);
         let slew = self.robot().slew().per_frame;

@@ -59,7 +59,10 @@ fn without_lag_every_mount_is_where_the_assembly_has_it() {
     let places = model.pose(angles, [0.0; 4]).expect("closes");
     assert_eq!(places.len(), model.mounts.len());
     for (mount, place) in model.mounts.iter().zip(places) {
-        let Placement { origin: at, x_axis: turn } = model.assembly().place(*mount, &pose);
+        let Placement {
+            origin: at,
+            x_axis: turn,
+        } = model.assembly().place(*mount, &pose);
         let error = [at.x, at.y, turn.x, turn.y].into_iter().zip(place);
         let error = error.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(error < 1e-9, "{mount:?}: {place:?}");

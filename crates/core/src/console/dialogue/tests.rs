@@ -28,7 +28,7 @@ use crate::numbers::units::Width;
 use crate::sample::{GAITS, SLOW_PACE, Sample};
 use crate::step::Step;
 use crate::virtual_board::{Eeprom, VirtualBoard, is_final};
-use dialogue::{Dialogue, wake_robot, neutral, pairs, wake_odd_robot, supply, widths};
+use dialogue::{Dialogue, neutral, pairs, supply, wake_odd_robot, wake_robot, widths};
 
 /// The command for the neutral pose of [`Sample::odd`].
 const NEUTRAL: &str = "pose 132.37 47.91 309.64 226.18";
@@ -60,7 +60,10 @@ fn an_accepted_line_is_answered_by_ok_and_the_line_in_lower_case() {
     for command in commands.into_iter().chain(GAITS) {
         assert_eq!(wake_odd_robot().send_line(command), format!("ok {command}"));
         let shouted = format!("  {}\t", command.to_uppercase());
-        assert_eq!(wake_odd_robot().send_line(&shouted), format!("ok {command}"));
+        assert_eq!(
+            wake_odd_robot().send_line(&shouted),
+            format!("ok {command}")
+        );
     }
 }
 

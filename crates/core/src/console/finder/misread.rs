@@ -200,14 +200,18 @@ impl LineReading {
     /// The reading after another byte.
     fn after_byte(self, byte: u8, text: &LineAutomaton) -> Self {
         match (byte.to_ascii_lowercase(), self) {
-            (b'\r' | b'\n', Self::CommandPrefix(state)) if text.accepting_states.contains(&state) => Self::CompleteCommand(state),
+            (b'\r' | b'\n', Self::CommandPrefix(state))
+                if text.accepting_states.contains(&state) =>
+            {
+                Self::CompleteCommand(state)
+            }
             (b'\r' | b'\n', Self::Deleted) => Self::CompleteCommand(usize::MAX),
             (b'\r' | b'\n', _) => Self::CommandPrefix(LineAutomaton::START),
             (0x80.., _) | (_, Self::Garbled) => Self::Garbled,
             (_, Self::Deleted) => Self::Deleted,
-            (0x08 | 0x7f, Self::CommandPrefix(state)) => {
-                text.previous_state(state).map_or(Self::Deleted, Self::CommandPrefix)
-            }
+            (0x08 | 0x7f, Self::CommandPrefix(state)) => text
+                .previous_state(state)
+                .map_or(Self::Deleted, Self::CommandPrefix),
             (0x08 | 0x7f, Self::Mismatch(state, 1)) => Self::CommandPrefix(state),
             (0x08 | 0x7f, Self::Mismatch(state, more)) => Self::Mismatch(state, more - 1),
             (_, Self::Mismatch(state, more)) => Self::Mismatch(state, more + 1),
@@ -363,7 +367,10 @@ fn edges_from(states: BTreeSet<ReceiverState>, bits: &BitGraph) -> BTreeSet<Rece
 
 /// The commands that a receiver can read at another rate, over all states that it can reach.
 fn commands_read(sender: Rate, receiver: Rate) -> BTreeSet<usize> {
-    let (bits, text) = (BitGraph::of(&LineAutomaton::all_commands()), LineAutomaton::accepted_lines());
+    let (bits, text) = (
+        BitGraph::of(&LineAutomaton::all_commands()),
+        LineAutomaton::accepted_lines(),
+    );
     let before = [
         LineReading::CommandPrefix(LineAutomaton::START),
         LineReading::Mismatch(LineAutomaton::START, 1),
@@ -433,7 +440,10 @@ fn no_command_that_may_come_first_is_read_at_a_slower_rate() {
     let mut text = LineAutomaton::accepted_lines();
     let words = Word::ALL.iter().map(|word| word.text());
     let is_short = |word: &&str| word.len() < MIN_COMMAND_BYTES;
-    let short: BTreeSet<usize> = words.filter(is_short).map(|word| text.add_word(word)).collect();
+    let short: BTreeSet<usize> = words
+        .filter(is_short)
+        .map(|word| text.add_word(word))
+        .collect();
     for (sender, receiver) in rate_pairs(true) {
         let read = commands_read(sender, receiver);
         assert!(

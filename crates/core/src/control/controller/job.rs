@@ -67,7 +67,8 @@ impl Control {
             Some(Job::Load) => {
                 let mut saved = Settings::NONE;
                 match copies::read(self.motion.robot(), memory, &mut saved) {
-                    SavedState::Latest | SavedState::OneCopy => match self.replace_settings(&saved) {
+                    SavedState::Latest | SavedState::OneCopy => match self.replace_settings(&saved)
+                    {
                         Err(Refusal::TravelTooNarrow(_)) => Err(Refusal::NothingSaved),
                         outcome => outcome,
                     },

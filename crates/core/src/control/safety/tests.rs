@@ -118,7 +118,8 @@ fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says_and_no_sooner()
         for _ in 0..10 {
             safety.note_command();
             let mut frames = 0;
-            while safety.check_frame(&HEALTHY, &supplies, State::Walking, deadman) == Reaction::None {
+            while safety.check_frame(&HEALTHY, &supplies, State::Walking, deadman) == Reaction::None
+            {
                 frames += 1;
             }
             // If the command came just before the first frame, these are the times since it, ms: in the last frame,
@@ -192,7 +193,10 @@ fn a_falling_supply_stops_then_ends_the_pulses_and_forbids_writing_first() {
 fn each_late_edge_stops_the_robot_and_is_reported() {
     let mut safety = without_boot();
     for late in [1, 2, 7, 65_535] {
-        let health = Health { late_edges: late, ..HEALTHY };
+        let health = Health {
+            late_edges: late,
+            ..HEALTHY
+        };
         assert_eq!(frame(&mut safety, &health), Reaction::Freeze);
         assert_eq!(safety.fault(), Some(Fault::Late));
         assert_eq!(notices(&mut safety), [Notice::Fault]);
@@ -223,7 +227,10 @@ fn of_two_reactions_at_once_the_stronger_one_counts() {
     for _ in 0..5 {
         frame(&mut safety, &health_at(4.0));
     }
-    let health = Health { late_edges: 1, ..health_at(4.0) };
+    let health = Health {
+        late_edges: 1,
+        ..health_at(4.0)
+    };
     assert_eq!(frame(&mut safety, &health), Reaction::EndPulses);
 }
 

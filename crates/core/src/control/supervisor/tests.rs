@@ -85,7 +85,10 @@ fn the_docs_print_the_table_of_events() {
 fn the_docs_print_the_table_of_restarts() {
     let mut rows = Vec::new();
     for cause in Cause::ALL {
-        for (brown_outs, often) in [(0, "once, twice"), (BROWN_OUTS_TO_REST, "three times in a row")] {
+        for (brown_outs, often) in [
+            (0, "once, twice"),
+            (BROWN_OUTS_TO_REST, "three times in a row"),
+        ] {
             let action = |before| first_action(cause, brown_outs, before);
             if brown_outs > 0
                 && ServosBefore::ALL.map(action)

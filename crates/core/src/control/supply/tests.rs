@@ -38,7 +38,11 @@ fn measure_board_until_change(supply: &mut Supply, volts: f64) -> (usize, Level)
 }
 
 /// Measures until the level changes; returns the number of frames, 0 if it has not changed after 200, and the level.
-fn measure_until_change(supply: &mut Supply, reading: Reading, supplies: &Supplies) -> (usize, Level) {
+fn measure_until_change(
+    supply: &mut Supply,
+    reading: Reading,
+    supplies: &Supplies,
+) -> (usize, Level) {
     for frame in 1..=200 {
         if supply.measure(reading, supplies) {
             return (frame, supply.level());

@@ -38,8 +38,9 @@ impl Bounds {
         let end = |index: usize, end, angles| {
             bounds::EndErrors::of(&lizard.end(end), &robot.ends[index], angles)
         };
-        let side =
-            |index: usize, side| bounds::slider_error(&lizard.side(side), &robot.content.sides[index]);
+        let side = |index: usize, side| {
+            bounds::slider_error(&lizard.side(side), &robot.content.sides[index])
+        };
         Self {
             ends: [
                 end(0, kinematics::End::Head, [a1, a2]),
@@ -78,7 +79,8 @@ fn decide_safety(robot: &Sample, pose: &Pose) -> Option<bool> {
     let step = 1.0 / per_mm(robot.content.sides[0].scale).min(per_mm(robot.content.sides[1].scale));
     let shifted_limits = |sign: f64| kinematics::Limits {
         type2: robot.measures.limits.type2 + sign * (bounds.max_of_ends(|end| end.type2) + Q15),
-        type1: robot.measures.limits.type1 + sign * (bounds.max_of_ends(bounds::EndErrors::type1) + Q15),
+        type1: robot.measures.limits.type1
+            + sign * (bounds.max_of_ends(bounds::EndErrors::type1) + Q15),
         leg: robot.measures.limits.leg + sign * (MAX_DIRECTION_ERROR + Q15),
         stroke_min: robot.measures.limits.stroke_min
             + sign * (bounds.sliders[0].max(bounds.sliders[1]) + step),
@@ -174,7 +176,10 @@ fn the_bounds_decide_nearly_every_pose_and_are_narrow_where_a_robot_stands() {
     let mut runner = TestRunner::deterministic();
     let mut decided = 0;
     for _ in 0..250 {
-        let (robot, poses) = robots_with_poses().new_tree(&mut runner).expect("a pose").current();
+        let (robot, poses) = robots_with_poses()
+            .new_tree(&mut runner)
+            .expect("a pose")
+            .current();
         let known = poses
             .iter()
             .filter(|pose| decide_safety(&robot, pose).is_some());

@@ -3,7 +3,7 @@
 use std::vec::Vec;
 
 use super::*;
-use crate::memory::record::{ERASED, RECORD_BYTES, Progress};
+use crate::memory::record::{ERASED, Progress, RECORD_BYTES};
 use crate::memory::settings::Boot;
 use crate::numbers::gaits::GaitId;
 use crate::numbers::part::Servo;
@@ -71,7 +71,11 @@ fn the_last_of_a_thousand_saves_is_loaded() {
         let new = settings(&robot, n % 70);
         let saved = save_all(&new, &mut eeprom);
         assert_eq!(without_turn(&saved), without_turn(&new));
-        assert_eq!(load_settings(&robot, &eeprom), (saved, SavedState::Latest), "{n}");
+        assert_eq!(
+            load_settings(&robot, &eeprom),
+            (saved, SavedState::Latest),
+            "{n}"
+        );
     }
 }
 
@@ -164,7 +168,11 @@ fn any_flipped_bit_leaves_the_last_settings_the_previous_or_robot_tomls() {
         if settings == last {
             lasts += 1;
         } else {
-            assert_eq!((settings, outcome), (before, SavedState::OneCopy), "bit {bit}");
+            assert_eq!(
+                (settings, outcome),
+                (before, SavedState::OneCopy),
+                "bit {bit}"
+            );
             befores += 1;
         }
     }
@@ -219,7 +227,11 @@ fn every_bit_of_the_servos_hash_tells_other_servos() {
     save_all(&settings(&robot, 1), &mut eeprom);
     for bit in 0..32 {
         let other = robot.clone().with(|content| content.servo_hash ^= 1 << bit);
-        assert_eq!(load_settings(&other, &eeprom).1, SavedState::Foreign, "bit {bit}");
+        assert_eq!(
+            load_settings(&other, &eeprom).1,
+            SavedState::Foreign,
+            "bit {bit}"
+        );
     }
     assert_eq!(load_settings(&robot, &eeprom).1, SavedState::Latest);
 }

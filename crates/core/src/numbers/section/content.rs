@@ -8,7 +8,8 @@ use lizard_avr::{Flash, Plain};
 
 use super::seal::add_seal;
 use super::{
-    AFTER_NUMBERS, CURVES, FORMAT, Header, MAGIC, MAX_NAME_BYTES, MapHeader, Numbers, Part, PartRange,
+    AFTER_NUMBERS, CURVES, FORMAT, Header, MAGIC, MAX_NAME_BYTES, MapHeader, Numbers, Part,
+    PartRange,
 };
 use crate::numbers::bars::Bars;
 use crate::numbers::calibration::Calibration;

@@ -7,7 +7,7 @@ use lizard_kinematics::{AssemblyMode, End, FiveBar, Lanes};
 use lizard_robot::{CellMaps, CoreRobot, Robot};
 
 use super::positions::Positions;
-use super::rows::{PairSample, columns, for_each_eight, lanes, tally_rows, q15_to_sine, splat};
+use super::rows::{PairSample, columns, for_each_eight, lanes, q15_to_sine, splat, tally_rows};
 use super::tally::{STEPS_BAND, Tally, margin_band};
 
 /// The comparison of guard and floating point over all pairs of an end.
@@ -126,7 +126,10 @@ impl<'a> EndComparison<'a> {
         } = margins;
         // A pose whose couplers nearly fold is refused, whatever its other margins are.
         if truth.is_closed && truth.type2 > self.limits[0] - self.margin_band {
-            Tally::raise(&mut tally.type2, (q15_to_sine(type2.0).abs() - truth.type2).abs());
+            Tally::raise(
+                &mut tally.type2,
+                (q15_to_sine(type2.0).abs() - truth.type2).abs(),
+            );
             for (fixed, exact) in [type1_left, type1_right].into_iter().zip(truth.type1) {
                 Tally::raise(&mut tally.type1, (q15_to_sine(fixed.0) - exact).abs());
             }

@@ -38,7 +38,10 @@ pub(super) struct Deadman {
 
 impl Deadman {
     /// The steps before and after a line of the user.
-    pub(super) fn steps_around(&mut self, line: &str) -> (&'static [DeadmanLine], &'static [DeadmanLine]) {
+    pub(super) fn steps_around(
+        &mut self,
+        line: &str,
+    ) -> (&'static [DeadmanLine], &'static [DeadmanLine]) {
         let line = line.to_ascii_lowercase();
         let word = line.split_whitespace().next().unwrap_or_default();
         if matches!(word, "cal" | "save") && self.is_set {

@@ -83,7 +83,9 @@ impl UsbPort {
 /// # Errors
 /// Fails if there is no port, or more than one.
 pub fn choose(ports: &[UsbPort], command: &'static str) -> Result<UsbPort, FindError> {
-    let known = ports.iter().filter(|port| UNO_VENDOR_IDS.contains(&port.vendor));
+    let known = ports
+        .iter()
+        .filter(|port| UNO_VENDOR_IDS.contains(&port.vendor));
     let known: Vec<&UsbPort> = known.collect();
     match (known.as_slice(), ports) {
         ([one], _) => Ok((*one).clone()),

@@ -112,7 +112,10 @@ impl Dialogue {
             board.link.send(&line)?;
         }
         // At most 51 lines, since keys are not handled meanwhile.
-        for wait in [ROBOT_READ_TIMEOUT; 1].into_iter().chain([Duration::ZERO; 50]) {
+        for wait in [ROBOT_READ_TIMEOUT; 1]
+            .into_iter()
+            .chain([Duration::ZERO; 50])
+        {
             let Some(line) = board.link.line(wait)? else {
                 break;
             };
@@ -215,7 +218,10 @@ impl Dialogue {
                     break;
                 }
             }
-            let status = self.session.status().map(super::status::Status::status_line);
+            let status = self
+                .session
+                .status()
+                .map(super::status::Status::status_line);
             let status = status.unwrap_or_default();
             screen.draw(&format!("{}{status}", self.status_prefix), &prompt)?;
         }

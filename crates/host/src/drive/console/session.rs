@@ -283,7 +283,8 @@ impl Session {
         if (line == "ok stop" || stands) && !self.asks_to_stop() {
             return self.take_stop_answer(line).then_some(visible).flatten();
         }
-        if let (Some((Question::Deadman(_), _)), Some(deadman)) = (&self.pending_question, &mut self.deadman)
+        if let (Some((Question::Deadman(_), _)), Some(deadman)) =
+            (&self.pending_question, &mut self.deadman)
             && deadman.take_answer_line(line)
         {
             return None;

@@ -72,7 +72,9 @@ impl FlashContents {
                 mark,
                 is_different: !code.clone().all(|page| is_there(&page)),
             },
-            None if flash[..2] == IDLE_JUMP && is_blank(&flash[2..PAGE_BYTES]) => Program::Incomplete,
+            None if flash[..2] == IDLE_JUMP && is_blank(&flash[2..PAGE_BYTES]) => {
+                Program::Incomplete
+            }
             None if image.is_robot_alone() && is_blank(&flash[..PAGE_BYTES]) => Program::Blank,
             None if image.is_robot_alone() => Program::Other { bytes: None },
             None => match flash.iter().rposition(|&byte| byte != BLANK) {
@@ -87,7 +89,9 @@ impl FlashContents {
         let has_image = has_code && pages.iter().all(|page| is_there(&page));
         let robot = match robot_in(flash) {
             Some(robot) => RobotInFlash::Named(label(&robot)),
-            None if is_blank(&flash[ROBOT_ADDRESS..ROBOT_ADDRESS + PAGE_BYTES]) => RobotInFlash::None,
+            None if is_blank(&flash[ROBOT_ADDRESS..ROBOT_ADDRESS + PAGE_BYTES]) => {
+                RobotInFlash::None
+            }
             None => RobotInFlash::Damaged,
         };
         Self {

@@ -32,7 +32,10 @@ pub struct Image {
 /// The address of a robot's section.
 const ROBOT_ADDRESS: usize = START as usize;
 
-const _: () = assert!(ROBOT_ADDRESS.is_multiple_of(PAGE_BYTES), "code and robot share no page");
+const _: () = assert!(
+    ROBOT_ADDRESS.is_multiple_of(PAGE_BYTES),
+    "code and robot share no page"
+);
 
 /// A page of flash that an image fills completely or in part.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -53,7 +56,7 @@ pub enum ImageError {
     #[error("there is no robot")]
     NoRobot,
     /// The image reaches into the boot loader.
-    #[error("the firmware has {0} bytes; {BOOT} fit before the boot loader")]
+    #[error("the firmware has {0} bytes; {BOOT_ADDRESS} fit before the boot loader")]
     TooLong(usize),
     /// A line is not Intel HEX.
     #[error("line {line} is not Intel HEX: {reason}")]
@@ -77,7 +80,7 @@ pub enum ImageError {
     /// A line has data at or beyond the boot loader, which cannot write itself.
     #[error(
         "line {line} is for address {address:#06x}; the boot loader, which is never written, \
-         begins at {BOOT:#06x}"
+         begins at {BOOT_ADDRESS:#06x}"
     )]
     BootLoader {
         /// The line's number, counted from 1.
@@ -200,7 +203,11 @@ impl Image {
             let address = self.start + index * PAGE_BYTES;
             Page { address, bytes }
         };
-        self.bytes.chunks(PAGE_BYTES).enumerate().map(page).collect()
+        self.bytes
+            .chunks(PAGE_BYTES)
+            .enumerate()
+            .map(page)
+            .collect()
     }
 }
 

@@ -36,7 +36,7 @@ use image::{Image, PAGE_BYTES};
 use serial_board::SerialBoard;
 use stk500::{Loader, Timeouts};
 use target::{Model, Target};
-use upload::{PageCounts, Event, Step};
+use upload::{Event, PageCounts, Step};
 
 /// Write the firmware with your robot to a UNO or a Nano on USB
 ///

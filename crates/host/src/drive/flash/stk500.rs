@@ -190,7 +190,11 @@ impl<B: Board> Loader<B> {
     ///
     /// # Errors
     /// See [`LoaderError`].
-    pub fn write_page(&mut self, address: usize, page: &[u8; PAGE_BYTES]) -> Result<(), LoaderError> {
+    pub fn write_page(
+        &mut self,
+        address: usize,
+        page: &[u8; PAGE_BYTES],
+    ) -> Result<(), LoaderError> {
         self.set_address(address)?;
         let head = [PROGRAM_PAGE, 0, PAGE_BYTES as u8, FLASH];
         self.command(&[head.as_slice(), page].concat(), &mut [])

@@ -58,7 +58,11 @@ impl Target {
     pub fn check_room(self, image: &Image, loader: Kind) -> Result<(), TooLong> {
         let is_nano = self.model == Some(Model::Nano) || loader == Kind::AtmegaBoot;
         let in_doubt = !is_nano && self.model.is_none() && self.may_be_nano;
-        let room = if is_nano || in_doubt { NANO_BOOT_ADDRESS } else { BOOT_ADDRESS };
+        let room = if is_nano || in_doubt {
+            NANO_BOOT_ADDRESS
+        } else {
+            BOOT_ADDRESS
+        };
         let end = image.end();
         if end > room {
             return Err(TooLong { end, in_doubt });

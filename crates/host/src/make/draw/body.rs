@@ -31,7 +31,12 @@ pub struct Sheet<At> {
 impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
     /// A bar between two points, `mm` millimetres wide.
     pub fn bar(&self, from: Vector, to: Vector, colour: &str, mm: f64) -> Line {
-        line((self.project)(from), (self.project)(to), colour, mm * self.scale)
+        line(
+            (self.project)(from),
+            (self.project)(to),
+            colour,
+            mm * self.scale,
+        )
     }
 
     /// A joint: a white disc with a radius of `mm` millimetres.
@@ -94,7 +99,12 @@ impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
     }
 
     /// Adds the parts of the legs above the plate, and the servo arms that drive their struts, to `group`.
-    pub fn draw_cranks(&self, mut group: Group, shafts: [Vector; 4], legs: &[LegPlace; 4]) -> Group {
+    pub fn draw_cranks(
+        &self,
+        mut group: Group,
+        shafts: [Vector; 4],
+        legs: &[LegPlace; 4],
+    ) -> Group {
         for (i, leg) in legs.iter().enumerate() {
             let [link, crank] = leg.strut;
             group = group.add(self.bar(leg.pivots[0], crank, SERVO[i], 3.2));

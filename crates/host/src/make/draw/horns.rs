@@ -263,7 +263,13 @@ fn tooth(degrees: f64) -> Group {
     Group::new()
         .add(ray(degrees))
         .add(ray(degrees + TOOTH_PITCH_DEG))
-        .add(arc(SPLINE, far - 7.0, degrees, degrees + TOOTH_PITCH_DEG, DARK))
+        .add(arc(
+            SPLINE,
+            far - 7.0,
+            degrees,
+            degrees + TOOTH_PITCH_DEG,
+            DARK,
+        ))
         .add(text_start(
             &format!("{TOOTH_PITCH_DEG}°"),
             (words.0, words.1 + 5.0),

@@ -171,7 +171,13 @@ impl<'a> View<'a> {
             ),
         ];
         let outline = Path::new().set("d", d.join(" ")).set("fill", SKIN);
-        let eye = |x: f64| circle(self.page_point(head + Vector::new(x, 12.0) * grown), 6.5, DARK);
+        let eye = |x: f64| {
+            circle(
+                self.page_point(head + Vector::new(x, 12.0) * grown),
+                6.5,
+                DARK,
+            )
+        };
         group.add(outline).add(eye(-9.0)).add(eye(9.0))
     }
 

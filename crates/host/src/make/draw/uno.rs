@@ -105,7 +105,11 @@ impl Uno {
     fn draw_sockets(&self, group: Group) -> Group {
         let block = |x: f64, top: f64, size: (f64, f64), fill| {
             edged(
-                rectangle(self.page_point(x, top), (size.0 * PITCH, size.1 * PITCH), fill),
+                rectangle(
+                    self.page_point(x, top),
+                    (size.0 * PITCH, size.1 * PITCH),
+                    fill,
+                ),
                 DARK,
                 1.2,
             )

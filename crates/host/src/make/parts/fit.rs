@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use lizard_parts::{Answer, Assembly, FAR_MM, NearestPair, Proof, Questions, BuildProblem};
+use lizard_parts::{Answer, Assembly, BuildProblem, FAR_MM, NearestPair, Proof, Questions};
 use lizard_robot::servo::NAMES;
 use serde::{Deserialize, Serialize};
 

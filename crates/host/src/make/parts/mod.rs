@@ -5,7 +5,7 @@ pub mod fit;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use lizard_parts::{Assembly, Bill, File, BuildProblem, coupon, papers, part_files};
+use lizard_parts::{Assembly, Bill, BuildProblem, File, coupon, papers, part_files};
 use lizard_robot::{Body, Robot};
 use serde::Serialize;
 

@@ -73,7 +73,10 @@ pub fn performance(points: &[Point], step: f64) -> String {
                 .map(|value| scale.colour(value))
         });
         for r3 in [0.1, 0.2, 0.3, 0.4] {
-            let (from, to) = (plot.page_point(0.0, SUM - r3), plot.page_point(SUM - r3, 0.0));
+            let (from, to) = (
+                plot.page_point(0.0, SUM - r3),
+                plot.page_point(SUM - r3, 0.0),
+            );
             group = group.add(line(from, to, "white", 0.8).set("stroke-dasharray", "3 4"));
         }
         let (x, y) = plot.page_point(Proportions::PAPER.r1, Proportions::PAPER.r2);

@@ -94,7 +94,11 @@ fn draw_panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &CheckedGait) 
     let smallest = values().fold(f64::INFINITY, f64::min);
     let largest = values().fold(f64::NEG_INFINITY, f64::max);
     let head = (plot.corner.0, plot.corner.1 - 10.0);
-    let range = format!("{:+.1} to {:+.1} mm", round_decimals(smallest, 1), round_decimals(largest, 1));
+    let range = format!(
+        "{:+.1} to {:+.1} mm",
+        round_decimals(smallest, 1),
+        round_decimals(largest, 1)
+    );
     group
         .add(text_start(&gait.name().replace('-', " "), head, 17.0).set("font-weight", "bold"))
         .add(text(

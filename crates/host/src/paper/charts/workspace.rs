@@ -143,7 +143,11 @@ pub fn conditioning(robot: &Robot) -> String {
 /// A circle in the plot.
 fn ring(plot: &Plot, centre: Vector, radius: f64, colour: &str, width: f64) -> Ring {
     edged(
-        circle(plot.page_point(centre.x, centre.y), radius * plot.scale(), "none"),
+        circle(
+            plot.page_point(centre.x, centre.y),
+            radius * plot.scale(),
+            "none",
+        ),
         colour,
         width,
     )

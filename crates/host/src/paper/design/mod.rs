@@ -311,7 +311,9 @@ fn print_ranking(
         args.spread.own(count)
     });
     let search_piece = |index| search.compute_piece(index);
-    let pieces = args.spread.all_pieces(args, search.piece_count(), search_piece)?;
+    let pieces = args
+        .spread
+        .all_pieces(args, search.piece_count(), search_piece)?;
     progress.finish_and_clear();
     let Some(pieces) = pieces else {
         return Ok(());

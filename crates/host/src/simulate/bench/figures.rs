@@ -182,7 +182,9 @@ impl Figures {
         let frames = idle.cycles as f64 / FRAME as f64;
         let of_gait = |figure: f64| moves.then_some(figure);
         let section = robot.section().len() as u32;
-        let width_error = idle_exact.max_width_error().zip(flooded_exact.max_width_error());
+        let width_error = idle_exact
+            .max_width_error()
+            .zip(flooded_exact.max_width_error());
         Ok(Self {
             code: firmware::code_bytes(long.board.uno.image(), robot),
             section,

@@ -71,7 +71,12 @@ impl CoreRun {
     fn next_wake(&self) -> Option<u64> {
         let board = &self.running.board;
         let is_waiting = board.unread() > 0 || self.running.has_output();
-        is_waiting.then(|| board.transmitter.free().saturating_sub(MAX_QUEUED * BYTE_CYCLES))
+        is_waiting.then(|| {
+            board
+                .transmitter
+                .free()
+                .saturating_sub(MAX_QUEUED * BYTE_CYCLES)
+        })
     }
 }
 

@@ -139,7 +139,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
         let mut uno = match &args.boot_loader {
             Some(loader) => served::new_board(loader, fidelity)?,
             None => {
-                let image = firmware::select_firmware(args.elf.as_deref(), &args.robot, &robot)?.image;
+                let image =
+                    firmware::select_firmware(args.elf.as_deref(), &args.robot, &robot)?.image;
                 Uno::with_image(image, fidelity)
             }
         };
@@ -157,7 +158,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
         contacts,
         ..choose_script(&args, &robot)?
     };
-    let Firmware { name, image } = firmware::select_firmware(args.elf.as_deref(), &args.robot, &robot)?;
+    let Firmware { name, image } =
+        firmware::select_firmware(args.elf.as_deref(), &args.robot, &robot)?;
     let mut uno = Uno::with_image(image, fidelity);
     supplies::connect(&mut uno, &robot);
     let mut printed = Vec::new();
@@ -186,7 +188,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         flash: firmware::code_bytes(uno.image(), robot) + robot.section().len() as u32,
         ram: Ram::of(&uno),
         overruns: uno.overruns(),
-        resets: uno.resets(),
+        resets: uno.watchdog_resets(),
         ended: end_message(&recording.state),
         svg: Some(args.svg.display().to_string()),
         dialogue: printed,
@@ -235,7 +237,11 @@ fn record(
 
 /// The widths that the firmware's core asks for; `None` if the firmware's banner does not
 /// say that it was built from the same core and tables as this program.
-fn core_widths(robot: &Robot, recording: &Recording, contacts: &[ContactChange]) -> Option<Vec<[u16; 4]>> {
+fn core_widths(
+    robot: &Robot,
+    recording: &Recording,
+    contacts: &[ContactChange],
+) -> Option<Vec<[u16; 4]>> {
     let log = &recording.frames;
     let commands = core_run::play_with_contacts(
         *robot.firmware(),

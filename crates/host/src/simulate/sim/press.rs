@@ -53,7 +53,11 @@ impl FromStr for Press {
             return Err("it ends before it begins".to_owned());
         }
         let input = input.to_owned();
-        Ok(Self { input, from_ms: from, to_ms: to })
+        Ok(Self {
+            input,
+            from_ms: from,
+            to_ms: to,
+        })
     }
 }
 
@@ -83,7 +87,11 @@ mod tests {
 
     fn press(input: &str, from: u64, to: u64) -> Press {
         let input = input.to_owned();
-        Press { input, from_ms: from, to_ms: to }
+        Press {
+            input,
+            from_ms: from,
+            to_ms: to,
+        }
     }
 
     #[test]

@@ -86,7 +86,9 @@ pub fn play(
         let slice_end_ms = (ms + FRAME / CYCLES_PER_MS).min(script.end_ms);
         loop {
             let next_command_ms = steps.peek().map_or(slice_end_ms, |step| step.ms);
-            if let Some(contact) = contacts.next_if(|contact| contact.ms < slice_end_ms.min(next_command_ms)) {
+            if let Some(contact) =
+                contacts.next_if(|contact| contact.ms < slice_end_ms.min(next_command_ms))
+            {
                 uno.run_until_cycle(contact.ms * CYCLES_PER_MS);
                 contact.apply(uno);
             } else if let Some(step) = steps.next_if(|step| step.ms < slice_end_ms) {

@@ -233,7 +233,12 @@ impl Chart<'_> {
         }
         for FootSpan { phase, from, to } in stretches {
             let (x, width) = (self.x(from), self.x(to) - self.x(from));
-            group = group.add(draw_foot_span(phase, SERVO[servo], (x, top), (width, FOOT_HEIGHT)));
+            group = group.add(draw_foot_span(
+                phase,
+                SERVO[servo],
+                (x, top),
+                (width, FOOT_HEIGHT),
+            ));
         }
         group
     }
@@ -247,7 +252,12 @@ impl Chart<'_> {
         let mut x = LEFT;
         for (phase, words) in entries {
             group = group
-                .add(draw_foot_span(phase, "#444444", (x, FEET_Y - 25.0), (30.0, 15.0)))
+                .add(draw_foot_span(
+                    phase,
+                    "#444444",
+                    (x, FEET_Y - 25.0),
+                    (30.0, 15.0),
+                ))
                 .add(text(
                     words,
                     (x + 38.0, FEET_Y - 12.5),

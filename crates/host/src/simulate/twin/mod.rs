@@ -17,7 +17,7 @@ use crate::shared::progress::Spinner;
 use crate::shared::suggestion::did_you_mean;
 use crate::simulate::sim::script::{Script, Step};
 use crate::simulate::sim::session::{self, Event, Recording};
-use crate::simulate::sim::{frame, read_script, time_progress_bar, spans, supplies, tour};
+use crate::simulate::sim::{frame, read_script, spans, supplies, time_progress_bar, tour};
 use crate::{Failure, RobotFile};
 use replay::Replay;
 use report::Report;

@@ -94,7 +94,11 @@ pub fn run(
                 .walked(robot, gait, model)
         };
         let paths: Vec<Travel> = (0..u64::from(times)).map(path).collect();
-        spreads.push(Spread::of(gait.name(), &paths, EffortShare::all(robot, gait)));
+        spreads.push(Spread::of(
+            gait.name(),
+            &paths,
+            EffortShare::all(robot, gait),
+        ));
     }
     bar.finish_and_clear();
     if json {

@@ -80,7 +80,10 @@ impl Drawing {
     }
 
     pub fn element_by_id(&self, id: &str) -> &Element {
-        let mut found = self.0.iter().filter(|element| element.attribute("id") == id);
+        let mut found = self
+            .0
+            .iter()
+            .filter(|element| element.attribute("id") == id);
         let element = found.next().unwrap_or_else(|| panic!("no {id}"));
         assert!(found.next().is_none(), "{id} twice");
         element

@@ -212,7 +212,10 @@ fn removing_any_link_splits_its_strip() {
     for link in links {
         let mut drawing = Drawing::of(&svg);
         assert!(
-            drawing.0.iter().any(|element| element.attribute("id") == link),
+            drawing
+                .0
+                .iter()
+                .any(|element| element.attribute("id") == link),
             "{link}"
         );
         drawing.0.retain(|element| element.attribute("id") != link);
@@ -335,7 +338,8 @@ fn inputs_are_an_option_of_a_robot_that_has_them_between_their_pins_and_ground()
         let from = name.strip_prefix("input-").expect("it begins so");
         assert_eq!(path[0], both.path(&format!("end-{from}"))[0]);
     }
-    let fill = |drawing: &Drawing, pin: &str| drawing.element_by_id(pin).attribute("fill").to_string();
+    let fill =
+        |drawing: &Drawing, pin: &str| drawing.element_by_id(pin).attribute("fill").to_string();
     assert_eq!(fill(&both, "pin-A1"), fill(&both, "pin-D9"));
     assert_ne!(fill(&none, "pin-A1"), fill(&none, "pin-D9"));
 }

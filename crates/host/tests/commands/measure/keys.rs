@@ -53,9 +53,17 @@ fn files_without_information_are_refused_with_advice() {
     let message = keys(&[&without], &[]).expect_refusal();
     assert!(message.contains("none of these gaits"), "{message}");
     let unknown = file("unknown.json", &ways(&[object("wakl", [30.0, 0.0, 0.0])]));
-    assert!(keys(&[&unknown], &[]).expect_refusal().contains("no gait `wakl`"));
+    assert!(
+        keys(&[&unknown], &[])
+            .expect_refusal()
+            .contains("no gait `wakl`")
+    );
     let still = file("still.json", &ways(&[object("stand", [0.0; 3])]));
-    assert!(keys(&[&still], &[]).expect_refusal().contains("moves no servo"));
+    assert!(
+        keys(&[&still], &[])
+            .expect_refusal()
+            .contains("moves no servo")
+    );
     let other = ways(&[object("walk", [30.0, 0.0, 0.0])])
         .replace(r#""speed":100"#, r#""speed":100,"period_expected":1.25"#);
     let other = file("other.json", &other);

@@ -25,7 +25,7 @@ use serde_json::Value;
 
 use crate::program::{lizard, run_in, scratch};
 use render::{Spot, Studio};
-use walk::{Show, Varies, Walk, gait, truth};
+use walk::{Show, Variation, Walk, gait, truth};
 
 /// Pictures per second of the films.
 const RATE: f64 = 8.0;
@@ -44,9 +44,9 @@ fn studio() -> Studio {
 fn walked() -> Walk {
     let gait = gait("walk");
     let start = -truth(&gait).forward * 2.5;
-    let varies = Varies {
+    let varies = Variation {
         cycle: [0.1, 0.1, 0.002],
-        ..Varies::default()
+        ..Variation::default()
     };
     Walk::new(&gait, [start, 0.0, 0.0], 5, varies, &mut Rng::with_seed(4))
 }
@@ -220,9 +220,9 @@ fn gaits(object: &Value) -> Vec<(&str, usize)> {
 #[test]
 fn gaits_in_a_film_are_distinguished_by_their_names_or_by_their_paths() {
     let [walk, left] = ["walk", "left"].map(gait);
-    let varies = Varies {
+    let varies = Variation {
         cycle: [0.1, 0.1, 0.002],
-        ..Varies::default()
+        ..Variation::default()
     };
     let order = [(&walk, 3), (&left, 4), (&walk, 3)];
     let show = Show::new(

@@ -64,8 +64,9 @@ fn rasterize(text: &str, [width, height]: [f64; 2]) -> (Picture, [[f64; 2]; 2]) 
             continue;
         }
         // A pixel is filled if its centre lies in the rectangle.
-        let range =
-            |from: f64, to: f64| (from * PIXELS_PER_MM + 0.5) as usize..(to * PIXELS_PER_MM + 0.5) as usize;
+        let range = |from: f64, to: f64| {
+            (from * PIXELS_PER_MM + 0.5) as usize..(to * PIXELS_PER_MM + 0.5) as usize
+        };
         for row in range(height - y - h, height - y) {
             for column in range(x, x + w) {
                 grey[row * columns + column] = fill;

@@ -27,7 +27,8 @@ impl Writer<'_> {
         let data = format!(r#"numeric name="back over forward" data="{ratio}""#);
         self.xml.write_empty_element(data);
         if self.scene.drives_in_bursts {
-            self.xml.write_empty_element(r#"numeric name="bursts" data="1""#);
+            self.xml
+                .write_empty_element(r#"numeric name="bursts" data="1""#);
         }
         if let Some(course) = &self.scene.course {
             let (begin, period) = (round(course.measure_start), round(course.period));
@@ -60,7 +61,9 @@ impl Writer<'_> {
         xml.open("default");
         xml.write_empty_element(r#"geom contype="0" conaffinity="0""#);
         xml.write_empty_element(r#"mesh scale="0.001 0.001 0.001""#);
-        xml.write_empty_element(format!(r#"equality solref="{CONSTRAINT_SOLREF}" solimp="{CONSTRAINT_SOLIMP}""#));
+        xml.write_empty_element(format!(
+            r#"equality solref="{CONSTRAINT_SOLREF}" solimp="{CONSTRAINT_SOLIMP}""#
+        ));
         xml.close();
     }
 
@@ -76,7 +79,9 @@ impl Writer<'_> {
             r#"texture name="floor" type="2d" builtin="checker" rgb1="0.75 0.75 0.72" rgb2="0.82 0.82 0.8" {SIZE}"#
         ));
         // Each square of the checker pattern becomes 5 cm wide.
-        xml.write_empty_element(r#"material name="floor" texture="floor" texrepeat="10 10" texuniform="true""#);
+        xml.write_empty_element(
+            r#"material name="floor" texture="floor" texrepeat="10 10" texuniform="true""#,
+        );
         for Piece { name, mesh, .. } in shown {
             let corners = mesh.corners.as_flattened().iter();
             let vertex = corners.map(|part| (part * 1e5).round() / 1e5 + 0.0);

@@ -59,7 +59,8 @@ impl Writer<'_> {
                 ));
             }
         }
-        self.xml.write_empty_element(r#"key name="home" ctrl="0 0 0 0""#);
+        self.xml
+            .write_empty_element(r#"key name="home" ctrl="0 0 0 0""#);
         self.xml.close();
     }
 }

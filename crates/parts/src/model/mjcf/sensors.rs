@@ -25,12 +25,14 @@ impl Writer<'_> {
                 .write_empty_element(format!(r#"touch name="load {leg}" site="pad {leg}""#));
         }
         let chassis = r#"objtype="xbody" objname="chassis""#;
-        self.xml.write_empty_element(format!(r#"framepos name="place" {chassis}"#));
+        self.xml
+            .write_empty_element(format!(r#"framepos name="place" {chassis}"#));
         self.xml
             .write_empty_element(format!(r#"framequat name="direction" {chassis}"#));
         self.xml
             .write_empty_element(r#"velocimeter name="velocity" site="chassis""#);
-        self.xml.write_empty_element(r#"gyro name="gyro" site="chassis""#);
+        self.xml
+            .write_empty_element(r#"gyro name="gyro" site="chassis""#);
         self.xml.close();
     }
 

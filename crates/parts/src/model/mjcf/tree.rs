@@ -42,7 +42,8 @@ impl Writer<'_> {
             self.write_pad_site(servo);
         }
         if is_chassis {
-            self.xml.write_empty_element(r#"site name="chassis" group="3""#);
+            self.xml
+                .write_empty_element(r#"site name="chassis" group="3""#);
             self.xml.write_empty_element(
                 r#"camera name="beside" mode="trackcom" pos="0.24 -0.21 0.2" xyaxes="0.66 0.75 0 -0.39 0.34 0.86""#,
             );
@@ -60,7 +61,8 @@ impl Writer<'_> {
         let name = node.name();
         let (kind, axis) = match node.freedom() {
             Freedom::Free => {
-                self.xml.write_empty_element(format!(r#"freejoint name="{name}""#));
+                self.xml
+                    .write_empty_element(format!(r#"freejoint name="{name}""#));
                 return;
             }
             Freedom::Turns => ("hinge", "0 0 1"),

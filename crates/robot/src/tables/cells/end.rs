@@ -110,9 +110,9 @@ impl Condition for EndConditions {
                 .iter()
                 .zip(elbows)
                 .all(|(margin, less)| margin - less >= self.type1 + ROUNDING_ALLOWANCE)
-            && [left, right]
-                .iter()
-                .all(|span| self.least_leg(span) - MAX_DIRECTION_ERROR >= self.leg + ROUNDING_ALLOWANCE);
+            && [left, right].iter().all(|span| {
+                self.least_leg(span) - MAX_DIRECTION_ERROR >= self.leg + ROUNDING_ALLOWANCE
+            });
         if is_kept {
             Verdict::Kept
         } else {
@@ -168,7 +168,11 @@ mod tests {
         let limits: [(Limit, f64, f64); 3] = [
             (|rule| &mut rule.type2, pose.type2, errors.type2),
             (|rule| &mut rule.type1, lower, bound),
-            (|rule| &mut rule.leg, left.y.min(right.y), MAX_DIRECTION_ERROR),
+            (
+                |rule| &mut rule.leg,
+                left.y.min(right.y),
+                MAX_DIRECTION_ERROR,
+            ),
         ];
         for (limit, value, bound) in limits {
             assert!(bound > 1e-5 && bound < 0.01, "{bound}");

@@ -9,7 +9,10 @@ const LONG_FRAMES: u32 = 400;
 fn a_count_ends_with_one_line_and_the_robot_holds_its_last_pose() {
     for name in ["sway", "sway left", "back"] {
         let mut dialogue = wake_odd_robot();
-        assert_eq!(dialogue.send_line(&format!("{name}  2")), format!("ok {name}  2"));
+        assert_eq!(
+            dialogue.send_line(&format!("{name}  2")),
+            format!("ok {name}  2")
+        );
         assert_eq!(dialogue.status("gait"), name.replace(' ', "-"));
         assert_eq!(dialogue.run_frames(LONG_FRAMES), ["# done"]);
         assert_eq!(
@@ -22,7 +25,10 @@ fn a_count_ends_with_one_line_and_the_robot_holds_its_last_pose() {
     }
     let mut dialogue = wake_odd_robot();
     dialogue.send_line("sway");
-    assert!(dialogue.run_frames(5 * LONG_FRAMES).is_empty(), "no count, no end");
+    assert!(
+        dialogue.run_frames(5 * LONG_FRAMES).is_empty(),
+        "no count, no end"
+    );
 }
 
 #[test]

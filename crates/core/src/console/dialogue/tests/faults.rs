@@ -9,7 +9,8 @@ fn boot_is_carried_out_three_seconds_after_power_on_unless_a_byte_comes() {
         dialogue.send_line(&format!("boot {boot}"));
         dialogue.expect_accepted("save");
         let eeprom = dialogue.board.memory.clone();
-        let mut unattended = Dialogue::with_memory(*Sample::odd(), eeprom.clone(), Restart::default());
+        let mut unattended =
+            Dialogue::with_memory(*Sample::odd(), eeprom.clone(), Restart::default());
         let printed = unattended.run_frames(149);
         assert_eq!(printed.len(), 1, "{printed:?}");
         assert_eq!(
@@ -173,7 +174,11 @@ fn restart_after_hang(count: u8, stance: Stance) -> Restart {
 #[test]
 fn after_a_hang_the_robot_holds_its_pose_and_reports_the_hang() {
     let stance = held_stance([400, -300, 200, -100]);
-    let mut dialogue = Dialogue::with_memory(*Sample::odd(), Eeprom::blank(), restart_after_hang(3, stance));
+    let mut dialogue = Dialogue::with_memory(
+        *Sample::odd(),
+        Eeprom::blank(),
+        restart_after_hang(3, stance),
+    );
     let printed = dialogue.run_frames(1);
     assert!(
         printed.contains(&"# fault: the program hung and began anew".to_string()),
@@ -219,7 +224,11 @@ fn a_pose_beyond_a_travel_that_was_saved_narrower_is_not_taken_over() {
     let eeprom = dialogue.board.memory.clone();
     // 132.37 deg plus 30 is safe, but beyond 160.
     let beyond = held_stance([5461, 0, 0, 0]);
-    let mut within = Dialogue::with_memory(*Sample::odd(), Eeprom::blank(), restart_after_hang(1, beyond));
+    let mut within = Dialogue::with_memory(
+        *Sample::odd(),
+        Eeprom::blank(),
+        restart_after_hang(1, beyond),
+    );
     within.run_frames(10);
     assert_eq!(within.status("gait"), "stop");
     let mut narrow = Dialogue::with_memory(*Sample::odd(), eeprom, restart_after_hang(1, beyond));

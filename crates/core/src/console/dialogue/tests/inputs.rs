@@ -82,7 +82,10 @@ fn a_robot_waits_for_its_button_walks_to_the_wall_and_turns_every_round() {
             ["# waiting for nose"]
         );
         assert_eq!(gait(&dialogue), "sway");
-        assert!(dialogue.run_frames(3 * LONG_FRAMES).is_empty(), "no wall, no end");
+        assert!(
+            dialogue.run_frames(3 * LONG_FRAMES).is_empty(),
+            "no wall, no end"
+        );
         assert_eq!(gait(&dialogue), "sway");
         assert!(press(&mut dialogue, NOSE, DEBOUNCE_FRAMES).is_empty());
         assert_eq!(gait(&dialogue), "back");
@@ -111,7 +114,10 @@ fn a_stuck_button_never_starts_the_robot_and_has_to_be_released_first() {
     let mut dialogue = wake_robot(Sample::odd().with_routine("patrol", 1, &PATROL));
     set_contact(&mut dialogue, BUTTON, true);
     dialogue.expect_accepted("patrol");
-    assert_eq!(dialogue.run_frames(5 * LONG_FRAMES), ["# waiting for button"]);
+    assert_eq!(
+        dialogue.run_frames(5 * LONG_FRAMES),
+        ["# waiting for button"]
+    );
     assert_eq!(gait(&dialogue), "Stop");
     set_contact(&mut dialogue, BUTTON, false);
     dialogue.run_frames(DEBOUNCE_FRAMES - 1);
@@ -313,7 +319,8 @@ fn boot_waits_for_the_button_as_long_as_it_takes_and_deadman_does_not_end_that()
         dialogue.expect_accepted(line);
     }
     let robot = *Sample::odd().with_routine("patrol", 0, &PATROL);
-    let mut unattended = Dialogue::with_memory(robot, dialogue.board.memory.clone(), Restart::default());
+    let mut unattended =
+        Dialogue::with_memory(robot, dialogue.board.memory.clone(), Restart::default());
     let lines = unattended.run_frames(10 * LONG_FRAMES);
     assert_eq!(
         lines[lines.len() - 2..],

@@ -108,7 +108,9 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             (Key::Back, Step::Walk) if self.skips_scales => {
                 self.go_to_step(Step::More).map(|()| false)
             }
-            (Key::Back, _) => self.enter_step(self.step_index.saturating_sub(1)).map(|()| false),
+            (Key::Back, _) => self
+                .enter_step(self.step_index.saturating_sub(1))
+                .map(|()| false),
             (Key::Next, Step::More) => {
                 self.skips_scales = true;
                 self.go_to_step(Step::Walk).map(|()| false)
@@ -125,10 +127,16 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             (Key::Next, _) => self.enter_step(self.step_index + 1).map(|()| false),
             (Key::Act, Step::Sign(servo)) => self.move_one(servo, &SIGN_ANGLES).map(|()| false),
             (Key::Act, Step::Scale(servo)) => self.move_one(servo, &SCALE_ANGLES).map(|()| false),
-            (Key::Turn(degrees), Step::Scale(servo)) => self.change_scale(servo, degrees).map(|()| false),
-            (Key::Turn(degrees), Step::Limit(servo)) => self.change_limit(servo, degrees).map(|()| false),
+            (Key::Turn(degrees), Step::Scale(servo)) => {
+                self.change_scale(servo, degrees).map(|()| false)
+            }
+            (Key::Turn(degrees), Step::Limit(servo)) => {
+                self.change_limit(servo, degrees).map(|()| false)
+            }
             (Key::Yes | Key::No, Step::Sign(servo)) => self.answer_sign(servo, key).map(|()| false),
-            (Key::Turn(degrees), Step::Trim(servo)) => self.change_trim(servo, degrees).map(|()| false),
+            (Key::Turn(degrees), Step::Trim(servo)) => {
+                self.change_trim(servo, degrees).map(|()| false)
+            }
             (Key::Act, Step::Walk) => self.set_walking(!self.is_walking).map(|()| false),
             _ => Ok(false),
         };

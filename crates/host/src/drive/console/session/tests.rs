@@ -22,7 +22,10 @@ fn a_users_line_is_sent_after_the_previous_answer() {
     );
     assert!(session.is_idle());
     assert_eq!(session.next_line(now), None, "the next status is not due");
-    assert_eq!(session.next_line(now + STATUS_INTERVAL).as_deref(), Some("status"));
+    assert_eq!(
+        session.next_line(now + STATUS_INTERVAL).as_deref(),
+        Some("status")
+    );
     assert!(session.status().is_some_and(Status::is_moving));
 }
 
@@ -92,7 +95,10 @@ fn stop_waits_for_no_answer_and_drops_waiting_lines() {
     assert_eq!(session.receive(STATUS), None, "the answer of before");
     assert_eq!(session.receive("ok stop").as_deref(), Some("ok stop"));
     assert!(session.is_idle());
-    assert_eq!(session.next_line(now + STATUS_INTERVAL).as_deref(), Some("status"));
+    assert_eq!(
+        session.next_line(now + STATUS_INTERVAL).as_deref(),
+        Some("status")
+    );
 }
 
 #[test]
@@ -199,7 +205,9 @@ fn lines_that_fail_are_counted_once_and_the_first_is_named() {
             Some(answer) => drop(session.receive(answer)),
             None => drop(session.end_overdue_question(now + TIMEOUT)),
         }
-        session.check_all_accepted().map_err(|failure| failure.to_string())
+        session
+            .check_all_accepted()
+            .map_err(|failure| failure.to_string())
     };
     assert_eq!(ask("walk", Some("ok walk")), Ok(()));
     let first =

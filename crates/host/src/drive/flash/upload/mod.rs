@@ -366,7 +366,10 @@ impl<B: Board> Upload<'_, B> {
     }
 
     fn write_page(&mut self, address: usize, bytes: &[u8; PAGE_BYTES]) -> Result<(), AttemptError> {
-        assert!(address < BOOT_ADDRESS, "an image ends before the boot loader");
+        assert!(
+            address < BOOT_ADDRESS,
+            "an image ends before the boot loader"
+        );
         Ok(self.loader.write_page(address, bytes)?)
     }
 

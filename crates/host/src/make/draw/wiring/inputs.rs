@@ -62,18 +62,36 @@ fn wire(group: Group, names: [&str; 3], y: f64, colour: &'static str) -> Group {
             13.0,
         ))
         .add(text_start(of_thing, (COMPONENT_X + 40.0, y + 5.0), 13.0))
-        .add(draw_terminal(&format!("{thing}-{of_board}"), (BOARD, y), DARK))
-        .add(draw_terminal(&format!("{thing}-at-{of_board}"), (COMPONENT_X, y), DARK))
+        .add(draw_terminal(
+            &format!("{thing}-{of_board}"),
+            (BOARD, y),
+            DARK,
+        ))
+        .add(draw_terminal(
+            &format!("{thing}-at-{of_board}"),
+            (COMPONENT_X, y),
+            DARK,
+        ))
 }
 
 /// A push button between its pin and ground.
 fn draw_button(group: Group, pin: u8, y: f64) -> Group {
-    let case = rectangle((COMPONENT_X - 12.0, y - 14.0), (44.0, ROW + 28.0), "#e6eef7").set("rx", 5);
+    let case = rectangle(
+        (COMPONENT_X - 12.0, y - 14.0),
+        (44.0, ROW + 28.0),
+        "#e6eef7",
+    )
+    .set("rx", 5);
     let middle = y + ROW / 2.0;
     let group = group
         .add(edged(case, DARK, 1.5))
         .add(line((COMPONENT_X, y), (COMPONENT_X + 16.0, y), DARK, THIN))
-        .add(line((COMPONENT_X, y + ROW), (COMPONENT_X + 16.0, y + ROW), DARK, THIN))
+        .add(line(
+            (COMPONENT_X, y + ROW),
+            (COMPONENT_X + 16.0, y + ROW),
+            DARK,
+            THIN,
+        ))
         .add(edged(
             circle((COMPONENT_X + 20.0, middle), 8.0, "white"),
             DARK,

@@ -13,7 +13,7 @@ use lizard_robot::servo::NAMES;
 use lizard_robot::{FUSE, Robot, SWITCH};
 use svg::node::element::Group;
 
-use super::route::{GAP, Path, route_end, turn_point, between_rows};
+use super::route::{GAP, Path, between_rows, route_end, turn_point};
 use super::uno::Uno;
 use crate::shared::ink::pin_name;
 use crate::shared::ink::{
@@ -197,9 +197,17 @@ fn body(servo: usize, index: usize, pin: u8) -> Group {
             (x + 28.0, TOP + 46.0),
             13.0,
         ))
-        .add(draw_terminal(&format!("{name}-ground"), (x + LEAD, TOP), BROWN))
+        .add(draw_terminal(
+            &format!("{name}-ground"),
+            (x + LEAD, TOP),
+            BROWN,
+        ))
         .add(draw_terminal(&format!("{name}-plus"), (x - LEAD, TOP), RED))
-        .add(draw_terminal(&format!("{name}-signal"), (x, TOP + BODY.1), ORANGE))
+        .add(draw_terminal(
+            &format!("{name}-signal"),
+            (x, TOP + BODY.1),
+            ORANGE,
+        ))
 }
 
 /// The cable to a computer, and the 5V pin, which stays free.

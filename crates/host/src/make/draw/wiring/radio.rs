@@ -93,7 +93,11 @@ pub fn draw(top: f64) -> Group {
             ))
             .add(text_start(of_module, (MODULE + 10.0, y + 5.0), 13.0))
             .add(draw_terminal(&format!("radio-{pin}"), (BOARD, y), DARK))
-            .add(draw_terminal(&format!("radio-module-{of_module}"), (MODULE, y), DARK));
+            .add(draw_terminal(
+                &format!("radio-module-{of_module}"),
+                (MODULE, y),
+                DARK,
+            ));
     }
     let words = "The diode's stripe is at the module. It lets the module only pull D0 low, so USB still works.";
     group.add(text_start(words, (30.0, top + 220.0), 13.0))

@@ -170,8 +170,16 @@ pub fn draw() -> Group {
             };
             let link = (hole.0 + other, hole.1);
             group = draw_brass_strip(group, hole, link, way + 1)
-                .add(draw_terminal(&format!("{name}-{}-wire", way + 1), hole, DARK))
-                .add(draw_terminal(&format!("{name}-{}-link", way + 1), link, DARK));
+                .add(draw_terminal(
+                    &format!("{name}-{}-wire", way + 1),
+                    hole,
+                    DARK,
+                ))
+                .add(draw_terminal(
+                    &format!("{name}-{}-link", way + 1),
+                    link,
+                    DARK,
+                ));
         }
     }
     let (top, bottom) = SIGNALS_AT;
@@ -183,7 +191,11 @@ pub fn draw() -> Group {
     for way in 0..5 {
         let x = signal_x(way);
         group = draw_brass_strip(group, (x, top + 3.0), (x, bottom - 3.0), way + 1)
-            .add(draw_terminal(&format!("signals-{}-servo", way + 1), (x, top), ORANGE))
+            .add(draw_terminal(
+                &format!("signals-{}-servo", way + 1),
+                (x, top),
+                ORANGE,
+            ))
             .add(draw_terminal(
                 &format!("signals-{}-board", way + 1),
                 (x, bottom),

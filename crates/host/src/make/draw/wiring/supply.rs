@@ -155,7 +155,11 @@ pub fn wires(socket: Point) -> Vec<Wire> {
         segment(above, ground_way("capacitor")),
         BLACK,
     ));
-    wires.push(thick("capacitor-supply", segment(below, supply_hole(1)), RED));
+    wires.push(thick(
+        "capacitor-supply",
+        segment(below, supply_hole(1)),
+        RED,
+    ));
     for (number, (y, colour)) in (1..).zip(BALANCE.into_iter().zip([RED, GREY_WIRE, BLACK])) {
         let path = segment((BATTERY, y), (ALARM, y));
         wires.push(Wire::new(format!("balance-{number}"), path, colour, LEG));
@@ -340,7 +344,19 @@ fn draw_converter(group: Group) -> Group {
             12.0,
         ))
         .add(draw_terminal("converter-out-plus", (left, PLUS), RED))
-        .add(draw_terminal("converter-out-minus", (left, CONVERTER_MINUS), DARK))
-        .add(draw_terminal("converter-in-plus", (right, CONVERTER_IN_PLUS), RED))
-        .add(draw_terminal("converter-in-minus", (right, CONVERTER_MINUS), DARK))
+        .add(draw_terminal(
+            "converter-out-minus",
+            (left, CONVERTER_MINUS),
+            DARK,
+        ))
+        .add(draw_terminal(
+            "converter-in-plus",
+            (right, CONVERTER_IN_PLUS),
+            RED,
+        ))
+        .add(draw_terminal(
+            "converter-in-minus",
+            (right, CONVERTER_MINUS),
+            DARK,
+        ))
 }

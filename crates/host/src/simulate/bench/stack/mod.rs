@@ -79,7 +79,9 @@ impl StackDepth {
                 }
             }
         }
-        let main = Walk::new(image, &flash, Context::Main).analyse_function(0)?.depth;
+        let main = Walk::new(image, &flash, Context::Main)
+            .analyse_function(0)?
+            .depth;
         let floor = image.data_end();
         Ok(Self {
             main,

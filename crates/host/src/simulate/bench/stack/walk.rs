@@ -191,7 +191,11 @@ impl<'a> Walk<'a> {
                     next_addresses.clear();
                 }
                 Effect::Return => {
-                    return Err(self.error_at(entry, address, "returns with something on the stack"));
+                    return Err(self.error_at(
+                        entry,
+                        address,
+                        "returns with something on the stack",
+                    ));
                 }
                 Effect::Indirect => {
                     let what = "goes to an address that it computes";

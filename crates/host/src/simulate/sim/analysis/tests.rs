@@ -31,7 +31,10 @@ fn an_angle_survives_the_conversion_to_a_pulse_and_back() {
     let pose = [120.0, 45.0, 300.0, 230.0];
     let log = frames_of(&robot, 2, |_| pose);
     let (robot, log) = (&robot, &log);
-    let first = Run { robot, log }.servo_frames().next().expect("two frames");
+    let first = Run { robot, log }
+        .servo_frames()
+        .next()
+        .expect("two frames");
     let angles = first.angles.expect("all four have a pulse");
     for i in 0..4 {
         // Half a cycle of 62.5 ns at 10 us per degree.
