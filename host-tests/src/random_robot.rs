@@ -221,7 +221,7 @@ fn neutral(rng: &mut Rng, lizard: &Lizard, limits: &Limits) -> Option<[f64; 4]> 
             stroke_min: f64::NEG_INFINITY,
             stroke_max: f64::INFINITY,
         };
-        roomy.allow(&solution).then_some(neutral)
+        roomy.is_safe(&solution).then_some(neutral)
     })
 }
 

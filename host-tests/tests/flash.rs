@@ -7,7 +7,7 @@ mod desk;
 mod shell;
 
 use desk::{BOOT_LOADER_START, Desk};
-use lizard_host::sim::frame::{frames, servo_pins};
+use lizard_host::sim::frame::{group_frames, servo_pins};
 use lizard_host_tests::{FRAME, FirmwareBench, Frame, robot};
 use lizard_time_limit::LIMIT;
 use shell::Shell;
@@ -53,7 +53,7 @@ fn make_flash_writes_the_image_and_the_robot_walks() {
         .iter()
         .find(|edge| edge.high && edge.pin == pins[0]);
     let start = first.expect("A1 has a pulse").cycle;
-    let walked: Vec<[u64; 4]> = frames(&desk.edges, pins, start, 100)
+    let walked: Vec<[u64; 4]> = group_frames(&desk.edges, pins, start, 100)
         .iter()
         .map(Frame::widths)
         .collect();

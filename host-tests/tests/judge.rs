@@ -31,7 +31,7 @@ enum TimeTolerance {
     Cycles,
     /// Less than an iteration of main's loop, which notices only once per iteration that the EEPROM
     /// is ready or that a byte of a flood has arrived.
-    Turn,
+    LoopIteration,
     /// Any difference: the consoles are not compared. Single cycles, in which two simulators may differ,
     /// decide which bytes of a flood are lost while long answers are sent.
     Any,
@@ -40,7 +40,7 @@ enum TimeTolerance {
 /// Upper bound of the cycles of an iteration of main's loop, which computes a frame, at most 12 000 cycles,
 /// and writes a piece of a line. If the EEPROM becomes ready just before an iteration in one simulator and
 /// just after the start of this iteration in the other, the other notices it one iteration later.
-const TURN: u64 = 20_000;
+const MAX_LOOP_CYCLES: u64 = 20_000;
 
 /// Runs avr8js on the bytes that the bench has received, and compares pulses, console and EEPROM.
 fn check_agreement(bench: &mut FirmwareBench, what: &str, apart: TimeTolerance) {
@@ -48,7 +48,7 @@ fn check_agreement(bench: &mut FirmwareBench, what: &str, apart: TimeTolerance) 
     let edges = bench.uno.edges();
     let simavr = Outputs::new(&edges, bench.bytes(), end);
     let received = bench.uno.received_by_uno();
-    let verdict = done(run_on_avr8js(
+    let verdict = unwrap_or_panic(run_on_avr8js(
         &FirmwareBench::image(),
         &received,
         end,
@@ -62,7 +62,7 @@ fn check_agreement(bench: &mut FirmwareBench, what: &str, apart: TimeTolerance) 
     );
     let limit = match apart {
         TimeTolerance::Cycles => Some(2),
-        TimeTolerance::Turn => Some(TURN),
+        TimeTolerance::LoopIteration => Some(MAX_LOOP_CYCLES),
         TimeTolerance::Any => None,
     };
     if let Some(limit) = limit {
@@ -85,7 +85,7 @@ fn check_agreement(bench: &mut FirmwareBench, what: &str, apart: TimeTolerance) 
     );
 }
 
-fn done<T>(result: Result<T, String>) -> T {
+fn unwrap_or_panic<T>(result: Result<T, String>) -> T {
     result.unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -122,7 +122,7 @@ fn two_simulators_agree_about_saved_settings() {
     check_agreement(
         &mut bench,
         "two calibrations and a pose",
-        TimeTolerance::Turn,
+        TimeTolerance::LoopIteration,
     );
 }
 
@@ -136,8 +136,8 @@ fn two_simulators_agree_under_a_saturated_line() {
         ("status\n", TimeTolerance::Any),
         ("help\n", TimeTolerance::Any),
         ("?\r", TimeTolerance::Any),
-        ("x", TimeTolerance::Turn),
-        ("\0\u{7f}\u{8}\n", TimeTolerance::Turn),
+        ("x", TimeTolerance::LoopIteration),
+        ("\0\u{7f}\u{8}\n", TimeTolerance::LoopIteration),
     ];
     thread::scope(|scope| {
         for (flood, apart) in floods {
@@ -159,7 +159,7 @@ fn two_simulators_agree_under_a_saturated_line() {
 
 #[test]
 fn the_known_faults_of_avr8js_still_exist_and_are_corrected() {
-    done(run_own_tests());
+    unwrap_or_panic(run_own_tests());
 }
 
 fn pulse(rise: u64, width: u64) -> PinPulse {
@@ -167,7 +167,7 @@ fn pulse(rise: u64, width: u64) -> PinPulse {
     PinPulse { pin, rise, width }
 }
 
-fn account(pulses: &[PinPulse], text: &str) -> Outputs {
+fn outputs_of(pulses: &[PinPulse], text: &str) -> Outputs {
     let sent = text.bytes().map(|byte| SerialByte { cycle: 0, byte });
     Outputs {
         pulses: pulses.to_vec(),
@@ -179,10 +179,10 @@ fn account(pulses: &[PinPulse], text: &str) -> Outputs {
 #[test]
 fn the_first_difference_between_two_accounts_is_named() {
     let pulses = [pulse(1_000, 24_000), pulse(321_000, 24_000)];
-    let ours = account(&pulses, "ok walk");
+    let ours = outputs_of(&pulses, "ok walk");
     let later = pulses.map(|PinPulse { rise, width, .. }| pulse(rise + 1, width));
     let difference = |pulses: &[PinPulse]| {
-        let theirs = account(pulses, "ok walk");
+        let theirs = outputs_of(pulses, "ok walk");
         compare_pulses(&ours, &theirs, &[Pin::d(9)]).map(|agreed| (agreed.count, agreed.offset))
     };
     assert_eq!(difference(&later), Ok((2, 1)));
@@ -216,7 +216,7 @@ fn the_first_difference_between_two_accounts_is_named() {
             "byte 7 of the console is on avr8js alone: \"ok walks\"",
         ),
     ] {
-        let printed = compare_console(&ours, &account(&pulses, text)).expect_err(named);
+        let printed = compare_console(&ours, &outputs_of(&pulses, text)).expect_err(named);
         assert!(printed.contains(named), "{printed}");
     }
 }

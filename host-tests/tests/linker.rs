@@ -83,7 +83,7 @@ fn far_sum() -> u16 {
     (0..10).fold(7, |sum, index| f(index, sum))
 }
 
-fn result(image: &Image) -> u16 {
+fn run_for_result(image: &Image) -> u16 {
     let uno = run(image);
     let at = address(image, "result");
     u16::from_le_bytes([uno.peek(at), uno.peek(at + 1)])
@@ -92,8 +92,8 @@ fn result(image: &Image) -> u16 {
 #[test]
 fn functions_in_another_order_compute_the_same_in_fewer_bytes() {
     let [(plain, _), (short, savings)] = link_both_ways(&far_calls(""));
-    assert_eq!(result(&plain), far_sum());
-    assert_eq!(result(&short), far_sum());
+    assert_eq!(run_for_result(&plain), far_sum());
+    assert_eq!(run_for_result(&short), far_sum());
     // Main cannot be near all ten functions that it calls, but each of these functions can be near its
     // callee.
     assert!(savings.calls >= 20, "{savings:?}");
@@ -122,7 +122,7 @@ fn functions_stay_in_place_if_one_of_them_falls_through_into_the_next() {
             let symbol = |name| image.symbol(name).expect("it has one");
             let upper = symbol("upper");
             assert_eq!(symbol("lower").address, upper.address + upper.size, "{end}");
-            results.push(result(&image));
+            results.push(run_for_result(&image));
         }
         assert_eq!(results[0], results[1], "{end}");
         assert_ne!(results[0], far_sum(), "{end}");

@@ -48,7 +48,7 @@ fn no_modules_use_each_other_in_a_circle() {
         for folder in folders(&root().join(name).join("src")) {
             let uses = folder.uses(WITH_OWN_FILE.contains(&(name, &folder.path)));
             count += uses.values().map(BTreeSet::len).sum::<usize>();
-            let circles = in_circles(uses);
+            let circles = find_circles(uses);
             assert!(
                 circles.is_empty(),
                 "{name}, {}: these modules use each other in a circle: {circles:?}",
@@ -82,7 +82,7 @@ fn a_cycle_is_found_without_the_modules_that_lead_to_it_or_from_it() {
         lines.iter().map(line).collect()
     };
     let chain = uses(&[("a", &["b", "c"]), ("b", &["c"]), ("c", &[])]);
-    assert!(in_circles(chain).is_empty());
+    assert!(find_circles(chain).is_empty());
     let circle = uses(&[
         ("above", &["a"]),
         ("a", &["b"]),
@@ -90,7 +90,7 @@ fn a_cycle_is_found_without_the_modules_that_lead_to_it_or_from_it() {
         ("c", &["a", "below"]),
         ("below", &[]),
     ]);
-    assert_eq!(in_circles(circle), ["a", "b", "c"]);
+    assert_eq!(find_circles(circle), ["a", "b", "c"]);
 }
 
 #[test]
@@ -106,7 +106,7 @@ fn a_use_of_a_module_above_is_read_as_its_path_and_a_roots_own_items_are_found()
 
 /// Returns the modules that use each other in circles: those that remain after repeatedly removing every
 /// module that uses no other or that no other uses.
-fn in_circles(mut uses: Uses) -> Vec<String> {
+fn find_circles(mut uses: Uses) -> Vec<String> {
     loop {
         let before = uses.len();
         let used: BTreeSet<String> = uses.values().flatten().cloned().collect();
@@ -126,25 +126,29 @@ struct Folder {
     /// The path prefix of the modules' names: `crate::`, or for example `crate::measures::`.
     path: String,
     /// The text of the file that declares the modules, without comments and tests.
-    root: String,
+    root_text: String,
     /// The directory that holds the modules' files.
-    place: PathBuf,
+    directory: PathBuf,
 }
 
 /// Returns all folders of modules of a crate, the crate itself first.
 fn folders(source: &Path) -> Vec<Folder> {
     let mut all = vec![Folder {
         path: "crate::".to_owned(),
-        root: read(&source.join("lib.rs")),
-        place: source.to_owned(),
+        root_text: read(&source.join("lib.rs")),
+        directory: source.to_owned(),
     }];
     let mut next = 0;
     while let Some(folder) = all.get(next) {
         let within = folder.modules().into_iter().filter_map(|module| {
-            let place = folder.place.join(module);
+            let place = folder.directory.join(module);
             let root = read(&place.join("mod.rs")) + &read(&place.with_extension("rs"));
             let path = format!("{}{module}::", folder.path);
-            place.is_dir().then_some(Folder { path, root, place })
+            place.is_dir().then_some(Folder {
+                path,
+                root_text: root,
+                directory: place,
+            })
         });
         let within: Vec<_> = within.collect();
         all.extend(within);
@@ -155,7 +159,7 @@ fn folders(source: &Path) -> Vec<Folder> {
 
 impl Folder {
     fn modules(&self) -> BTreeSet<&str> {
-        self.root.lines().filter_map(module).collect()
+        self.root_text.lines().filter_map(module).collect()
     }
 
     /// Returns the uses among the folder's modules, including its `mod.rs` if `with_root`. A module
@@ -165,7 +169,7 @@ impl Folder {
         // `crate::Name` uses the module from which the folder's root file exports the name.
         let mut homes: BTreeMap<&str, &str> = modules.iter().map(|name| (*name, *name)).collect();
         for export in self
-            .root
+            .root_text
             .split(';')
             .filter_map(|item| item.split_once("use "))
         {
@@ -177,17 +181,19 @@ impl Folder {
         }
         let mut uses = Uses::new();
         if with_root {
-            homes.extend(items(&self.root).map(|name| (name, ROOT)));
+            homes.extend(items(&self.root_text).map(|name| (name, ROOT)));
             let used = modules
                 .iter()
-                .filter(|module| self.root.contains(&format!("{module}::")));
+                .filter(|module| self.root_text.contains(&format!("{module}::")));
             uses.insert(ROOT.to_owned(), used.map(ToString::to_string).collect());
         }
         for module in &modules {
-            let place = self.place.join(module);
+            let place = self.directory.join(module);
             let mut text = resolve_super(&read(&place.with_extension("rs")), &self.path);
             for path in files(&place) {
-                let within = path.strip_prefix(&self.place).expect("it is in the folder");
+                let within = path
+                    .strip_prefix(&self.directory)
+                    .expect("it is in the folder");
                 let parents = within.parent().expect("a folder").iter();
                 let parents = parents.map(|name| name.to_string_lossy());
                 let parents: Vec<_> = std::iter::once((*module).into()).chain(parents).collect();

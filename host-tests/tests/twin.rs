@@ -3,7 +3,7 @@
 use lizard_host::sim::frame::servo_pins;
 use lizard_host::sim::script::{Script, Step};
 use lizard_host::sim::session::play;
-use lizard_host::sim::spans::spans;
+use lizard_host::sim::spans::command_spans;
 use lizard_host::sim::supplies;
 use lizard_host::twin::replay::Replay;
 use lizard_host::twin::report::Report;
@@ -29,7 +29,7 @@ fn walk_all(model: ServoModel) -> Replay {
     supplies::connect(&mut uno, robot());
     let recording = play(&mut uno, servo_pins(robot()), &script, |_| Ok(()));
     let recording = recording.expect("nothing is written");
-    let spans = spans(&script, &recording.answers);
+    let spans = command_spans(&script, &recording.answers);
     Replay::of(robot(), &recording.frames, spans, model)
 }
 

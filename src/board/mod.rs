@@ -180,7 +180,7 @@ impl Board for Uno {
     #[inline(always)]
     fn counters(&self) -> Counters {
         Counters {
-            late: pulses::late(),
+            late_edges: pulses::late(),
             rx_lost: serial::lost(),
         }
     }

@@ -18,13 +18,13 @@ use servo_pulses::cells::{Byte, Counter};
 
 /// Size of the receive ring, which holds a complete line: main may be busy for the time of 64 bytes, 89 000
 /// cycles, seven times the limit of a frame.
-const RECEIVE: usize = 64;
+const RECEIVE_RING_SIZE: usize = 64;
 
 /// Size of the send ring: the longest line of the console fits, and arithmetic modulo 256 is the cheapest.
-const SEND: usize = 256;
+const SEND_RING_SIZE: usize = 256;
 
 /// Number of bytes that the send ring holds.
-pub const ROOM: u8 = Ring::<SEND>::CAPACITY;
+pub const ROOM: u8 = Ring::<SEND_RING_SIZE>::CAPACITY;
 
 /// Returns the value of UBRR0 for the nearest possible rate: 16 MHz / 8 / (16 + 1) = 117 647 baud,
 /// 2.1 % fast, which the boot loader uses too; 57 143, 0.8 % slow; 38 462 and 9615, 0.2 % fast.
@@ -71,7 +71,7 @@ impl<const N: usize> Ring<N> {
     fn put(&self, byte: u8) {
         let head = self.head.get();
         self.bytes[usize::from(head & Self::MASK)].set(byte);
-        // The byte is stored before the head moves, because that makes it visible to the other side.
+        // The byte before the head: the other side looks at the head first.
         self.head.set(head.wrapping_add(1));
     }
 
@@ -87,8 +87,8 @@ impl<const N: usize> Ring<N> {
     }
 }
 
-static RECEIVED: Ring<RECEIVE> = Ring::new();
-static TO_SEND: Ring<SEND> = Ring::new();
+static RECEIVED: Ring<RECEIVE_RING_SIZE> = Ring::new();
+static TO_SEND: Ring<SEND_RING_SIZE> = Ring::new();
 static LOST: Counter = Counter::new();
 
 /// Sets up the port. Call it once, with interrupts off.

@@ -23,13 +23,13 @@ global_asm!(
 unsafe extern "C" {
     #[link_name = "lizard_stack_guard"]
     #[allow(improper_ctypes, reason = "no other language sees it")]
-    static WORD: [Byte; 4];
+    static GUARD_WORD: [Byte; 4];
 }
 
 fn word() -> &'static [Byte; 4] {
     // SAFETY: every byte of RAM has some value, and each is one that a `Byte` may
     // have.
-    unsafe { &WORD }
+    unsafe { &GUARD_WORD }
 }
 
 /// Writes the guard word. Call it once.

@@ -19,7 +19,7 @@ const REFERENCE: u8 = 0x0e;
 const A0: u8 = 14;
 
 /// ADCSRA value that switches the converter on, at 16 MHz / 128 = 125 kHz, since ten bits need 50 to 200 kHz.
-const ON: u8 = 0x87;
+const CONVERTER_ON: u8 = 0x87;
 const START: u8 = 0x40;
 
 /// The converter, and its readings.
@@ -40,7 +40,7 @@ impl Converter {
     pub fn new(registers: ADC) -> Self {
         select_channel(&registers, REFERENCE);
         // SAFETY: any value of ADCSRA is sound; this one switches the converter on.
-        registers.adcsra.write(|w| unsafe { w.bits(ON) });
+        registers.adcsra.write(|w| unsafe { w.bits(CONVERTER_ON) });
         Self {
             registers,
             reading: Reading::default(),
@@ -64,7 +64,7 @@ impl Converter {
             // SAFETY: as above; this value also starts a conversion.
             self.registers
                 .adcsra
-                .write(|w| unsafe { w.bits(ON | START) });
+                .write(|w| unsafe { w.bits(CONVERTER_ON | START) });
         } else {
             let value = self.registers.adc.read().bits();
             self.store_value(value);

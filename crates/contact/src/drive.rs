@@ -12,21 +12,21 @@ use crate::strut::Strut;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Drive {
     /// Kind of the connection.
-    pub kind: Kind,
+    pub kind: DriveKind,
     /// Free movement of a leg to either side, deg.
     pub play: f64,
 }
 
 /// The connection between a servo's link and its leg.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Kind {
+pub enum DriveKind {
     /// A rigid strut: the leg follows its servo exactly, except for the play.
     Rigid,
     /// A strut with a slot and a tension spring, which yields in one direction.
     Strut(Strut),
 }
 
-impl Kind {
+impl DriveKind {
     /// Names of the kinds in robot.toml.
     pub const WORDS: [&str; 2] = ["rigid", "strut"];
 }
@@ -34,35 +34,35 @@ impl Kind {
 impl Drive {
     /// A leg that follows its servo exactly.
     pub const RIGID: Self = Self {
-        kind: Kind::Rigid,
+        kind: DriveKind::Rigid,
         play: 0.0,
     };
 
     /// True if a leg can lag behind its servo.
-    pub fn lags(&self) -> bool {
-        self.kind != Kind::Rigid || self.play > 0.0
+    pub fn can_lag(&self) -> bool {
+        self.kind != DriveKind::Rigid || self.play > 0.0
     }
 
     /// The slotted strut; `None` for another kind.
     pub fn strut(&self) -> Option<&Strut> {
         match &self.kind {
-            Kind::Strut(strut) => Some(strut),
-            Kind::Rigid => None,
+            DriveKind::Strut(strut) => Some(strut),
+            DriveKind::Rigid => None,
         }
     }
 
     /// Name of the kind in robot.toml.
     pub fn word(&self) -> &'static str {
         match self.kind {
-            Kind::Rigid => Kind::WORDS[0],
-            Kind::Strut(_) => Kind::WORDS[1],
+            DriveKind::Rigid => DriveKind::WORDS[0],
+            DriveKind::Strut(_) => DriveKind::WORDS[1],
         }
     }
 
     /// Limits a lag (deg) to the range between the stops, with the servo at this sweep, deg.
     pub(crate) fn limit_lag(&self, leg: usize, sweep: f64, lag: f64) -> f64 {
         let stops = self
-            .of_leg(leg, sweep, 1.0, 1.0)
+            .lag_energy_of_leg(leg, sweep, 1.0, 1.0)
             .stops()
             .map(f64::to_degrees);
         lag.clamp(stops[0], stops[1])
@@ -70,10 +70,16 @@ impl Drive {
 
     /// The energy of this leg's lag while its servo is at this sweep, deg. Forces are in units of `force` N;
     /// `max` bounds the torque of a pad on its leg, in those units times mm.
-    pub(crate) fn of_leg(&self, leg: usize, sweep: f64, force: f64, max: f64) -> LagEnergy {
+    pub(crate) fn lag_energy_of_leg(
+        &self,
+        leg: usize,
+        sweep: f64,
+        force: f64,
+        max: f64,
+    ) -> LagEnergy {
         let [lower, upper] = match &self.kind {
-            Kind::Rigid => [Side::Stop; 2],
-            Kind::Strut(strut) => strut.sides(leg, sweep, force),
+            DriveKind::Rigid => [Side::Stop; 2],
+            DriveKind::Strut(strut) => strut.sides(leg, sweep, force),
         };
         LagEnergy {
             play: self.play.to_radians(),

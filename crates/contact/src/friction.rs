@@ -23,20 +23,20 @@ pub(crate) type Twist = [f64; 3];
 /// Smallest rounding over the size of the slides.
 const MIN_ROUNDING: f64 = 1e-8;
 /// Number of the last stage. Stage 0 rounds by the size of the slides, the last one by `MIN_ROUNDING` times that.
-const STAGES: i32 = 5;
+const LAST_STAGE: i32 = 5;
 /// The first stage if a guess of the solution is given.
 const FIRST_STAGE_NEAR: i32 = 2;
 /// The largest number of Newton steps in a stage; five to eight are usual.
 const MAX_STEPS: usize = 40;
 /// Largest net force that counts as balance, as a share of one pad's friction.
-const BALANCED: f64 = 1e-9;
+const MAX_IMBALANCE: f64 = 1e-9;
 
 /// Smallest gain of a Newton step (over a pad's friction times the size of the slides) that
 /// floating point can show.
 const MIN_GAIN: f64 = 1e-23;
 
 /// The largest distance that counts as zero, mm.
-const STILL: f64 = 1e-12;
+const MAX_STILL_DISTANCE: f64 = 1e-12;
 
 /// The four pads in a small step.
 #[derive(Clone, Copy)]
@@ -61,7 +61,7 @@ pub(crate) struct Inertia {
     /// Force per mm, and torque per rad, by which the body's movement differs from the previous step.
     pub stiffness: Twist,
     /// Twist of the previous step.
-    pub before: Twist,
+    pub previous_twist: Twist,
     /// Force per mm by which a pad's slide differs from the previous step, from the mass of its leg.
     pub leg_stiffness: f64,
     /// Slides of the pads in the previous step.
@@ -74,7 +74,7 @@ pub(crate) struct Compliance {
     /// Derivatives of the pads' positions by the lag, backward, mm/rad.
     pub lag_derivatives: [Point; 4],
     /// Lags before the step, rad.
-    pub before: [f64; 4],
+    pub previous_lags: [f64; 4],
     /// Energies of the legs' lags.
     pub lag_energy: [LagEnergy; 4],
 }
@@ -92,7 +92,7 @@ pub(crate) struct Displacement {
 
 /// The rounded cost near a displacement, to second order. The lag of a leg affects no other leg, so its row of
 /// the Hessian is eliminated directly.
-struct Expansion {
+struct CostExpansion {
     cost: f64,
     /// Gradient by the twist, with the lags eliminated.
     gradient: [f64; 3],
@@ -124,7 +124,7 @@ impl Pads {
     /// Finds the displacement with the least cost, starting at a guess.
     pub fn minimum_near(&self, guess: Option<&Displacement>) -> Displacement {
         let size = largest(&self.swing).max(self.free_move());
-        if size < STILL {
+        if size < MAX_STILL_DISTANCE {
             return self.moved_by([0.0; 3], [0.0; 4]);
         }
         // Turns are measured in mm at the pads' radius, slides in units of the swing.
@@ -144,8 +144,8 @@ impl Pads {
             None => ([0.0; 3], [0.0; 4], 0),
         };
         let mut answers = [None, guess.map(|_| (size * MIN_ROUNDING, x, z))];
-        for stage in first..=STAGES {
-            let eps = size * MIN_ROUNDING.powf(f64::from(stage) / f64::from(STAGES));
+        for stage in first..=LAST_STAGE {
+            let eps = size * MIN_ROUNDING.powf(f64::from(stage) / f64::from(LAST_STAGE));
             let around = |x, z| self.expand(&scale.displacement(self, x, z), eps, &scale);
             let mut current = around(x, z);
             // The slide of a pad that holds shrinks with the rounding, so the solutions of two
@@ -162,7 +162,7 @@ impl Pads {
             for _ in 0..MAX_STEPS {
                 let steep = current.gradient.into_iter();
                 let steep = steep.chain(current.legs.map(|leg| leg.slope));
-                if steep.map(f64::abs).all(|g| g < BALANCED * size) {
+                if steep.map(f64::abs).all(|g| g < MAX_IMBALANCE * size) {
                     break;
                 }
                 let dx = solve(current.hessian, current.gradient);
@@ -199,7 +199,7 @@ impl Pads {
     fn moved_by(&self, twist: Twist, change: [f64; 4]) -> Displacement {
         let before = self
             .compliance
-            .map_or([0.0; 4], |compliance| compliance.before);
+            .map_or([0.0; 4], |compliance| compliance.previous_lags);
         Displacement {
             twist,
             lag: std::array::from_fn(|i| before[i] + change[i]),
@@ -219,7 +219,7 @@ impl Pads {
                 let [x, y] = compliance.lag_derivatives[i];
                 return x.hypot(y) * motor.unloaded_end().abs();
             }
-            let ([x, y], lag) = (compliance.lag_derivatives[i], compliance.before[i]);
+            let ([x, y], lag) = (compliance.lag_derivatives[i], compliance.previous_lags[i]);
             let held_torque = self.load[i] * self.ratio.max(1.0) * x.hypot(y);
             match compliance.lag_energy[i].spring_torque(lag) > held_torque * (1.0 + 1e-6) {
                 true => x.hypot(y) * lag.abs(),
@@ -252,11 +252,13 @@ impl Pads {
 
     /// Computes the rounded cost of a displacement, its gradient and its Hessian by the scaled
     /// unknowns.
-    fn expand(&self, displacement: &Displacement, eps: f64, scale: &Scale) -> Expansion {
+    fn expand(&self, displacement: &Displacement, eps: f64, scale: &Scale) -> CostExpansion {
         let (mut cost, mut gradient, mut hessian) = (0.0, [0.0; 3], [[0.0; 3]; 3]);
         let mut legs = [Row::default(); 4];
         if let Some(Inertia {
-            stiffness, before, ..
+            stiffness,
+            previous_twist: before,
+            ..
         }) = self.body
         {
             for i in 0..3 {
@@ -320,7 +322,7 @@ impl Pads {
             }
             legs[i] = leg;
         }
-        Expansion {
+        CostExpansion {
             cost,
             gradient,
             hessian,
@@ -352,7 +354,7 @@ impl Scale {
     }
 }
 
-impl Expansion {
+impl CostExpansion {
     /// First-order reduction of the cost by the Newton steps of the lags, without the share of the twist.
     fn predicted_gain(&self) -> f64 {
         let reduction = |leg: &Row| match leg.curvature {

@@ -196,7 +196,7 @@ impl Side {
     }
 
     /// Largest lag beyond the play.
-    fn end(&self) -> f64 {
+    fn max_lag(&self) -> f64 {
         match self {
             Self::Stop => 0.0,
             Self::Strut { end_lag, .. } => *end_lag,
@@ -265,7 +265,10 @@ impl LagEnergy {
 
     /// Least and greatest lag that the stops allow, rad.
     pub fn stops(&self) -> [f64; 2] {
-        [-self.play - self.lower.end(), self.play + self.upper.end()]
+        [
+            -self.play - self.lower.max_lag(),
+            self.play + self.upper.max_lag(),
+        ]
     }
 
     /// Largest gain of a torque on this drive: the convex conjugate of the energy, for the proof
@@ -279,7 +282,7 @@ impl LagEnergy {
             // Ternary search: torque times lag minus the energy has a single maximum.
             Side::Strut { .. } if torque <= self.stop => {
                 let gain = |x: f64| torque * x - side.expand(x, 0.0, self.stop).0;
-                let (mut low, mut high) = (0.0, side.end().min(std::f64::consts::PI));
+                let (mut low, mut high) = (0.0, side.max_lag().min(std::f64::consts::PI));
                 for _ in 0..200 {
                     let third = (high - low) / 3.0;
                     match gain(low + third) < gain(high - third) {

@@ -57,7 +57,7 @@ mod strut;
 mod travel;
 mod walker;
 
-pub use drive::{Drive, Kind};
+pub use drive::{Drive, DriveKind};
 pub use feet::{Body, Feet, GRAVITY};
 pub use friction::Point;
 pub use ground::{DEFAULT_FRICTION, Ground};

@@ -95,7 +95,7 @@ impl Motors {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drive::{Drive, Kind};
+    use crate::drive::{Drive, DriveKind};
     use crate::feet::{Body, Feet};
     use crate::ground::Ground;
     use crate::stance::Stance;
@@ -270,7 +270,7 @@ mod tests {
     fn a_servo_drags_its_leg_at_the_end_of_its_play() {
         let floor = Ground {
             drive: Drive {
-                kind: Kind::Rigid,
+                kind: DriveKind::Rigid,
                 play: 1.0,
             },
             ..ground(400.0, 0.7)

@@ -112,7 +112,7 @@ fn pressures(feet: [Point; 4], by_length: [f64; 4], centre: Point, stands: [bool
 mod tests {
     use super::*;
 
-    const AT: [Point; 4] = [[55.0, 80.0], [55.0, -80.0], [-55.0, -80.0], [-55.0, 80.0]];
+    const RECTANGLE: [Point; 4] = [[55.0, 80.0], [55.0, -80.0], [-55.0, -80.0], [-55.0, 80.0]];
     const SWUNG: [Point; 4] = [[67.0, 78.0], [48.0, -79.0], [-60.0, -80.0], [-51.0, 77.0]];
 
     fn body(centre: Point) -> Body {
@@ -175,11 +175,11 @@ mod tests {
     #[test]
     fn feet_in_a_rectangle_share_by_lever() {
         // The centre is halfway to the front feet, which then carry 1.5 times the mean.
-        let loads = Stance::LEVEL.loads(&body([27.5, 0.0]), AT);
+        let loads = Stance::LEVEL.loads(&body([27.5, 0.0]), RECTANGLE);
         for (load, expected) in loads.into_iter().zip([1.5, 1.5, 0.5, 0.5]) {
             assert!((load - expected).abs() < 1e-9, "{loads:?}");
         }
-        for load in Stance::LEVEL.loads(&Body::DEFAULT, AT) {
+        for load in Stance::LEVEL.loads(&Body::DEFAULT, RECTANGLE) {
             assert!((load - 1.0).abs() < 1e-9);
         }
     }
@@ -190,12 +190,12 @@ mod tests {
         let stance = twisted(0.6);
         assert!((stance.diagonal() - 0.3).abs() < 1e-12);
         let share = 0.3 / Body::DEFAULT.mean_load();
-        let loads = stance.loads(&Body::DEFAULT, AT);
+        let loads = stance.loads(&Body::DEFAULT, RECTANGLE);
         for (load, sign) in loads.into_iter().zip([1.0, -1.0, 1.0, -1.0]) {
             assert!((load - 1.0 - sign * share).abs() < 1e-9, "{loads:?}");
         }
         // A foot that is much too long and the foot diagonally opposite carry half the robot each.
-        let loads = twisted(10.0).loads(&Body::DEFAULT, AT);
+        let loads = twisted(10.0).loads(&Body::DEFAULT, RECTANGLE);
         for (load, expected) in loads.into_iter().zip([2.0, 0.0, 2.0, 0.0]) {
             assert!((load - expected).abs() < 1e-6, "{loads:?}");
         }
@@ -204,12 +204,12 @@ mod tests {
     #[test]
     fn a_foot_never_pulls() {
         // The centre is beyond the diagonal through feet 1 and 3, so foot 2 leaves the floor.
-        let loads = Stance::LEVEL.loads(&body([30.0, 50.0]), AT);
+        let loads = Stance::LEVEL.loads(&body([30.0, 50.0]), RECTANGLE);
         assert_eq!(loads[2], 0.0);
         assert!(loads.iter().all(|load| *load >= 0.0), "{loads:?}");
         assert!((loads.iter().sum::<f64>() - 4.0).abs() < 1e-9);
         // No foot pulls even if the robot falls over.
-        let fallen = Stance::LEVEL.loads(&body([200.0, 0.0]), AT);
+        let fallen = Stance::LEVEL.loads(&body([200.0, 0.0]), RECTANGLE);
         assert!(fallen.iter().all(|load| *load >= 0.0), "{fallen:?}");
     }
 }

@@ -54,7 +54,7 @@ impl Strut {
     }
 
     /// Lag with the screw at the end of the slot, deg, and the torque at that lag, N mm.
-    pub fn end(&self, leg: usize, sweep: f64) -> (f64, f64) {
+    pub fn slot_end(&self, leg: usize, sweep: f64) -> (f64, f64) {
         let stretch = self.stretch(leg, sweep);
         let lag = stretch.lag_at_growth(self.slot);
         let force = self.force + self.rate * self.slot;

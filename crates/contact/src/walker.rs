@@ -17,7 +17,7 @@ const MAX_SWEEP: f64 = 0.5;
 /// on the lags after it; each iteration improves them.
 const MAX_ITERATIONS: usize = 4;
 /// Change of a lag in an iteration below which the lag counts as settled, rad.
-const SETTLED: f64 = 1e-4;
+const MAX_LAG_CHANGE: f64 = 1e-4;
 /// Rounding error allowed in a number of steps.
 const STEPS_ERROR: f64 = 1e-6;
 /// Width to which kinks are rounded off after a step, rad.
@@ -46,20 +46,24 @@ pub struct Walker {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slip {
     /// Distance that each foot slid over the floor, mm.
-    pub feet: [f64; 4],
+    pub slid_distances: [f64; 4],
     /// Load of each foot at the end of the movement, relative to the mean.
     pub loads: [f64; 4],
 }
 
 impl Slip {
     const NONE: Self = Self {
-        feet: [0.0; 4],
+        slid_distances: [0.0; 4],
         loads: [1.0; 4],
     };
 
     fn add(&mut self, pads: &Pads, displacement: &Displacement) {
         self.loads = pads.load;
-        for (sum, [x, y]) in self.feet.iter_mut().zip(pads.slides(displacement)) {
+        for (sum, [x, y]) in self
+            .slid_distances
+            .iter_mut()
+            .zip(pads.slides(displacement))
+        {
             *sum += x.hypot(y);
         }
     }
@@ -211,7 +215,7 @@ impl Walker {
         let square = hip_forward * hip_forward + (front * front + hind * hind) / 2.0;
         Inertia {
             stiffness: [stiffness, stiffness, stiffness * square],
-            before: self.speed.map(|part| part * seconds),
+            previous_twist: self.speed.map(|part| part * seconds),
             leg_stiffness: stiffness_of(leg),
             slides: self
                 .pad_speeds
@@ -260,7 +264,7 @@ impl Walker {
             let error = (0..4).fold(0.0f64, |error, i| {
                 error.max((displacement.lag[i] - lag[i]).abs())
             });
-            if error < SETTLED {
+            if error < MAX_LAG_CHANGE {
                 break;
             }
             lag = displacement.lag;
@@ -299,13 +303,15 @@ impl Walker {
             ratio: self.ground.ratio * ratio,
             load: std::array::from_fn(|i| loads[i] * load[i]),
             body: None,
-            compliance: (drive.lags() || motors.iter().any(Option::is_some)).then(|| Compliance {
-                lag_derivatives: along,
-                before: lag_before,
-                lag_energy: std::array::from_fn(|i| LagEnergy {
-                    motor: motors[i],
-                    ..drive.of_leg(i, servos[i], grip, max)
-                }),
+            compliance: (drive.can_lag() || motors.iter().any(Option::is_some)).then(|| {
+                Compliance {
+                    lag_derivatives: along,
+                    previous_lags: lag_before,
+                    lag_energy: std::array::from_fn(|i| LagEnergy {
+                        motor: motors[i],
+                        ..drive.lag_energy_of_leg(i, servos[i], grip, max)
+                    }),
+                }
             }),
         }
     }

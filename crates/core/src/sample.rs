@@ -33,7 +33,7 @@ use crate::numbers::slider::{self, Slider};
 use crate::numbers::supplies::{Supplies, Thresholds};
 use crate::numbers::units::{Angle, Scale, Sine, Sweep};
 
-pub use end::{Bars, Loop, per_mm};
+pub use end::{SampleCouplers, SampleFiveBar, per_mm};
 pub use measures::Measures;
 
 use end::steps;
@@ -88,7 +88,7 @@ pub const SLOW_PACE: u8 = 67;
 pub struct Sample {
     pub measures: Measures,
     pub content: Content,
-    pub ends: [Loop; 2],
+    pub ends: [SampleFiveBar; 2],
     robot: Robot<'static>,
 }
 
@@ -109,7 +109,8 @@ impl Sample {
             servos,
             slew,
         } = measures;
-        let end = |end| Loop::new(&lizard.end(end)).expect("couplers that are long enough");
+        let end =
+            |end| SampleFiveBar::new(&lizard.end(end)).expect("couplers that are long enough");
         let side = |side| {
             let slider = lizard.side(side);
             side_of(&slider, limits.stroke_min, limits.stroke_max)
@@ -124,7 +125,7 @@ impl Sample {
             rail: Some(14),
             slow_pace: SLOW_PACE,
             maps: core::array::from_fn(|_| Map::default()),
-            ends: ends.each_ref().map(Loop::content),
+            ends: ends.each_ref().map(SampleFiveBar::content),
             sides: [side(kinematics::Side::Left), side(kinematics::Side::Right)],
             limits: Limits {
                 type2: limit(limits.type2),
@@ -183,7 +184,9 @@ impl Sample {
 
     /// True if the integer guard accepts the neutral pose.
     pub fn stands_safely(&self) -> bool {
-        Clearance::of(self, &Pose::NEUTRAL).hazard(self).is_none()
+        Clearance::of(self, &Pose::NEUTRAL)
+            .first_hazard(self)
+            .is_none()
     }
 
     /// This robot with another hash, in a section with a correct checksum.
@@ -312,7 +315,7 @@ pub const HEALTHY: Health = Health {
         reference: 221,
         rail: 393,
     },
-    late: 0,
+    late_edges: 0,
     is_stack_intact: true,
     is_closed: false,
 };

@@ -169,7 +169,7 @@ impl Main {
             }
             let health = Health {
                 supply: board.supply(),
-                late: board.counters().late,
+                late_edges: board.counters().late_edges,
                 is_stack_intact: board.is_stack_intact(),
                 is_closed: match self.control.input().pin() {
                     0 => false,

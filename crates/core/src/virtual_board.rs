@@ -1,7 +1,7 @@
 //! The virtual board, for hosts: it behaves like the UNO's registers, pins and interrupts, without a chip.
 //!
 //! Every program that runs the core on a host (tests, the fuzzer, the page in a browser, the comparison with the
-//! simulated UNO) runs [`Main::step`] on this board. So they all test the same loop that the UNO repeats. [`Running`]
+//! simulated UNO) runs [`Main::step`] on this board. So they all test the same loop that the UNO repeats. [`RunningRobot`]
 //! combines the board and the loop for them.
 //!
 //! Time passes only when [`VirtualBoard::pass_time`] is called, in milliseconds. The events in a frame of 20 ms:
@@ -32,10 +32,10 @@ use crate::numbers::rate::Rate;
 use crate::numbers::units::{self, CYCLES_PER_US, Width};
 use crate::step::Board;
 
-pub use converter::{Converter, reading};
+pub use converter::{Converter, compute_reading};
 pub use eeprom::Eeprom;
 pub use ram::Ram;
-pub use running::{Running, is_final};
+pub use running::{RunningRobot, is_final};
 pub use transmitter::Transmitter;
 
 /// Milliseconds from one tick to the next.
@@ -49,10 +49,10 @@ const SLOT_MS: u8 = 4;
 pub const WATCHDOG_MS: u16 = 125;
 
 /// Capacity of the receive buffer, bytes.
-const RECEIVED: usize = 64;
+const RECEIVE_CAPACITY: usize = 64;
 
 /// Pulse widths that fit a slot, 1/16 us; any other width gives no pulse.
-const WIDTHS: core::ops::RangeInclusive<u16> = 1_000..=63_000;
+const VALID_WIDTHS: core::ops::RangeInclusive<u16> = 1_000..=63_000;
 
 /// The state of a virtual board: what a UNO keeps in its registers, memories and pins.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -67,9 +67,9 @@ pub struct VirtualBoard {
     started: Pulses,
     is_lit: bool,
     received: VecDeque<u8>,
-    lost: u16,
+    lost_bytes: u16,
     /// Pulse edges that came late.
-    pub late: u16,
+    pub late_edges: u16,
     /// True unless the stack has grown into the data.
     pub is_stack_intact: bool,
     /// The pins whose contacts are closed, one bit for each Arduino number.
@@ -91,7 +91,7 @@ pub struct VirtualBoard {
     pub rate: Rate,
     /// Milliseconds since the watchdog was fed.
     ms_since_fed: u16,
-    is_hushed: bool,
+    are_pulses_ended: bool,
     /// The pins of the servos and of the rail, once the main loop has connected them.
     connected: Option<([u8; 4], Option<u8>)>,
 }
@@ -114,8 +114,8 @@ impl VirtualBoard {
             started: Pulses::default(),
             is_lit: false,
             received: VecDeque::new(),
-            lost: 0,
-            late: 0,
+            lost_bytes: 0,
+            late_edges: 0,
             is_stack_intact: true,
             closed: 0,
             pulled_up: 0,
@@ -127,7 +127,7 @@ impl VirtualBoard {
             restart: Restart::NONE,
             rate: Rate::Fastest,
             ms_since_fed: 0,
-            is_hushed: false,
+            are_pulses_ended: false,
             connected: None,
         }
     }
@@ -135,7 +135,7 @@ impl VirtualBoard {
     /// Returns the board after a reset with this cause and state.
     #[must_use]
     pub fn restarted(self, restart: Restart) -> Self {
-        if let Some(stance) = &restart.before {
+        if let Some(stance) = &restart.stance_before {
             self.ram.store_stance(stance, restart.brown_outs);
         }
         let rate = restart.rate;
@@ -158,7 +158,7 @@ impl VirtualBoard {
         for _ in 0..ms {
             self.ms_since_fed = self.ms_since_fed.saturating_add(1);
             if self.ms_since_fed == WATCHDOG_MS {
-                self.is_hushed = true;
+                self.are_pulses_ended = true;
                 self.ram.mark_hung();
             }
             if self.ms_since_fed >= 2 * WATCHDOG_MS {
@@ -182,7 +182,8 @@ impl VirtualBoard {
                 self.take_over();
             }
             let width = self.playing.0[servo];
-            if !self.is_hushed && self.connected.is_some() && WIDTHS.contains(&width.0) {
+            if !self.are_pulses_ended && self.connected.is_some() && VALID_WIDTHS.contains(&width.0)
+            {
                 self.started.0[servo] = width;
             }
         }
@@ -203,7 +204,7 @@ impl VirtualBoard {
     }
 
     /// Milliseconds until the next tick.
-    pub const fn until_tick(&self) -> u16 {
+    pub const fn ms_until_tick(&self) -> u16 {
         (FRAME_MS - self.ms) as u16
     }
 
@@ -243,10 +244,10 @@ impl VirtualBoard {
     /// Sends bytes to the board. Bytes that do not fit into the receiver are lost.
     pub fn send(&mut self, bytes: &[u8]) {
         for byte in bytes {
-            if self.received.len() < RECEIVED {
+            if self.received.len() < RECEIVE_CAPACITY {
                 self.received.push_back(*byte);
             } else {
-                self.lost = self.lost.saturating_add(1);
+                self.lost_bytes = self.lost_bytes.saturating_add(1);
             }
         }
     }
@@ -258,7 +259,7 @@ impl VirtualBoard {
 
     /// Counts this many bytes as lost.
     pub const fn count_lost(&mut self, bytes: u16) {
-        self.lost = self.lost.saturating_add(bytes);
+        self.lost_bytes = self.lost_bytes.saturating_add(bytes);
     }
 
     /// The frame that the main loop submitted last.
@@ -288,12 +289,12 @@ impl VirtualBoard {
 
     /// The servos' state that would survive a reset.
     pub fn stored_stance(&self) -> Option<Stance> {
-        self.ram.found(None).before
+        self.ram.peek_restart(None).stance_before
     }
 
     /// True once the watchdog has ended the pulses.
     pub const fn are_pulses_ended(&self) -> bool {
-        self.is_hushed
+        self.are_pulses_ended
     }
 }
 
@@ -373,8 +374,8 @@ impl Board for VirtualBoard {
 
     fn counters(&self) -> Counters {
         Counters {
-            late: self.late,
-            rx_lost: self.lost,
+            late_edges: self.late_edges,
+            rx_lost: self.lost_bytes,
         }
     }
 }

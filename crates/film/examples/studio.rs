@@ -19,7 +19,7 @@ use fastrand::Rng;
 use jpeg_encoder::{ColorType, Encoder};
 
 use render::Studio;
-use walk::{Varies, Walk, gait, truth};
+use walk::{Variation, Walk, gait, truth};
 
 /// Pictures per second. Chromium keeps a late picture in step if the delay is shorter than the time of one picture,
 /// so a low rate stays in step on a busy machine.
@@ -45,9 +45,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let gait = gait("walk");
     let truth = truth(&gait);
     let start = -truth.forward * cycles as f64 / 2.0;
-    let varies = Varies {
+    let varies = Variation {
         cycle: CYCLE,
-        ..Varies::default()
+        ..Variation::default()
     };
     let walk = Walk::new(&gait, [start, 0.0, 0.0], cycles, varies, rng);
     let background = studio.background(rng);

@@ -26,15 +26,15 @@ const OFF_SIGMA: f64 = 0.01;
 const BEGINNINGS: usize = 48;
 /// Smallest squared difference between measured and predicted movements that shows another gait, as a share of the
 /// sum of the squares of both.
-const ANOTHER: f64 = 0.5;
+const MAX_MISFIT_SHARE: f64 = 0.5;
 /// Smallest squared difference between the movements of two consecutive cycles that shows a change, as a share of
 /// the mean of the squares of both.
-const CHANGES: f64 = 0.15;
+const MIN_CHANGE_SHARE: f64 = 0.15;
 /// Multiples of a cycle's duration that are tried.
 const LONGER: [u32; 3] = [2, 4, 8];
 /// Largest misfit with which another duration of a cycle is accepted, as a share of the misfit with the expected
 /// duration. A multiple of the duration must also leave less than this share of the movement itself.
-const MUCH_BETTER: f64 = 0.3;
+const MAX_MISFIT_RATIO: f64 = 0.3;
 
 /// The beginning of a cycle and the duration of a cycle, each with its standard error, s.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,10 +54,10 @@ pub(crate) struct Steps {
 
 impl Steps {
     /// Computes the movements along a path; the robot's cycles last `period` seconds.
-    pub(crate) fn of(path: &[PathPoint], period: f64) -> Self {
+    pub(crate) fn from_path(path: &[PathPoint], period: f64) -> Self {
         let later = PART * period;
         let step = |seen: &PathPoint| {
-            let there = path::between(path, seen.seconds + later)?;
+            let there = path::interpolate_at(path, seen.seconds + later)?;
             Some((seen.seconds, movement(there.seen_from(seen.place))))
         };
         Self {
@@ -77,18 +77,18 @@ impl Steps {
     /// Fails if the movement shows another gait or pace.
     pub(crate) fn clock(&self, gait: &Gait) -> Result<Clock, Trouble> {
         let tries = tries(gait);
-        let near = |start: f64, period: f64| squares(&self.sways(gait, start, period));
-        let (mut least, mut start, mut period) = self.best(gait.period, &tries, near);
+        let near = |start: f64, period: f64| squares(&self.variations(gait, start, period));
+        let (mut least, mut start, mut period) = self.minimize(gait.period, &tries, near);
         let (mut expected, mut doubt) = (gait.period, SIGMA);
         // If the picture rate is wrong, only the path itself gives the duration of a cycle.
-        let off = self.best(gait.period, &wide_tries(gait), near);
-        if off.0 < MUCH_BETTER * least {
+        let off = self.minimize(gait.period, &wide_tries(gait), near);
+        if off.0 < MAX_MISFIT_RATIO * least {
             (least, start, period) = off;
             (expected, doubt) = (period, OFF_SIGMA);
         }
         let misfit = squares(&self.differences(gait, start, period));
         let (there, times) = self.misfit_of_longer(gait);
-        if there < MUCH_BETTER * (misfit / self.moved()).min(1.0) {
+        if there < MAX_MISFIT_RATIO * (misfit / self.sum_of_squares()).min(1.0) {
             return Err(Trouble::AnotherPace { times });
         }
         let both = |(time, seen): &(f64, [f64; 3])| {
@@ -96,14 +96,14 @@ impl Steps {
             let predicted = gait.step(phase, phase + self.later / period);
             size(*seen).powi(2) + size(predicted).powi(2)
         };
-        if misfit > ANOTHER * self.steps.iter().map(both).sum::<f64>() {
+        if misfit > MAX_MISFIT_SHARE * self.steps.iter().map(both).sum::<f64>() {
             return Err(Trouble::NotThisGait {
                 period: gait.period,
             });
         }
         let sigma = (least / (3 * self.steps.len()) as f64).sqrt().max(1e-3);
         let model = |at: &[f64]| {
-            let mut all = self.sways(gait, at[0], at[1]);
+            let mut all = self.variations(gait, at[0], at[1]);
             all.iter_mut().for_each(|value| *value /= sigma);
             all.push((at[1] / expected - 1.0) / doubt);
             // Keeps the start near its first value if nothing within a cycle determines it.
@@ -126,7 +126,7 @@ impl Steps {
     /// measured movements' squares, with the start and duration of a cycle that fit best.
     pub(crate) fn misfit(&self, gait: &Gait) -> f64 {
         let away = |start: f64, period: f64| squares(&self.differences(gait, start, period));
-        self.best(gait.period, &tries(gait), away).0 / self.moved()
+        self.minimize(gait.period, &tries(gait), away).0 / self.sum_of_squares()
     }
 
     /// The misfit of a gait whose cycles take a multiple of their usual duration, and that multiple; the best of
@@ -135,14 +135,17 @@ impl Steps {
         let away = |start: f64, period: f64| squares(&self.differences(gait, start, period));
         let longer = LONGER.map(|times| {
             let period = f64::from(times) * gait.period;
-            (self.best(period, &[period], away).0 / self.moved(), times)
+            (
+                self.minimize(period, &[period], away).0 / self.sum_of_squares(),
+                times,
+            )
         });
         let least = longer.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
         least.unwrap_or((f64::INFINITY, 1))
     }
 
     /// The sum of the squares of the measured movements.
-    fn moved(&self) -> f64 {
+    fn sum_of_squares(&self) -> f64 {
         self.steps.iter().map(|(_, seen)| size(*seen).powi(2)).sum()
     }
 
@@ -162,7 +165,7 @@ impl Steps {
                     both += (size(next).powi(2) + size(*step).powi(2)) / 2.0;
                 }
             }
-            differ > CHANGES * both
+            differ > MIN_CHANGE_SHARE * both
         })
     }
 
@@ -177,7 +180,7 @@ impl Steps {
 
     /// Minimizes a function of a cycle's start and duration; returns its value, the start and the duration. Tries
     /// starts within a cycle of `period`, and all `periods`.
-    fn best(
+    fn minimize(
         &self,
         period: f64,
         periods: &[f64],
@@ -211,7 +214,7 @@ impl Steps {
     }
 
     /// The [`Steps::differences`] minus their mean on each axis, so that only the variation within a cycle counts.
-    fn sways(&self, gait: &Gait, start: f64, period: f64) -> Vec<f64> {
+    fn variations(&self, gait: &Gait, start: f64, period: f64) -> Vec<f64> {
         let mut sways = self.differences(gait, start, period);
         for axis in 0..3 {
             let own = sways.iter().skip(axis).step_by(3);

@@ -14,7 +14,7 @@ use crate::path::{self, PathPoint};
 use crate::trouble::Trouble;
 
 /// Smallest share of the usual movement per cycle for the robot to count as walking evenly.
-const WALKS: f64 = 0.9;
+const MIN_EVEN_SHARE: f64 = 0.9;
 /// Smallest share of the usual movement per cycle for the robot to count as walking unevenly, as when it starts or
 /// stops.
 const UNEVEN_SHARE: f64 = 0.25;
@@ -46,8 +46,8 @@ pub(crate) struct Cycles {
 /// Fails if the robot does not move, moves differently from the gait, changes its movement, or walks for less than
 /// two cycles.
 pub(crate) fn find(path: &[PathPoint], gait: &Gait) -> Result<Cycles, Trouble> {
-    let (walked, [begin, end]) = walked(path, gait)?;
-    let steps = Steps::of(walked, gait.period);
+    let (walked, [begin, end]) = select_even_walk(path, gait)?;
+    let steps = Steps::from_path(walked, gait.period);
     let Clock {
         start: [start, begin_error],
         period,
@@ -71,7 +71,8 @@ pub(crate) fn find(path: &[PathPoint], gait: &Gait) -> Result<Cycles, Trouble> {
     if places.len() < 3 {
         return Err(too_short(end - begin, gait));
     }
-    let to_calm = to_calm(walked, &places, calm, period[0], gait).unwrap_or_else(|| gait.at(calm));
+    let to_calm =
+        to_calm(walked, &places, calm, period[0], gait).unwrap_or_else(|| gait.place_at(calm));
     let from_calm = path::inverse(to_calm);
     let travel = |pair: &[(f64, Place)]| {
         let cycle = path::of_travel(pair[1].1.seen_from(pair[0].1));
@@ -93,17 +94,23 @@ pub(crate) fn find(path: &[PathPoint], gait: &Gait) -> Result<Cycles, Trouble> {
 
 /// Computes the movements while the robot walks evenly; fails if they are too few for a comparison with a gait.
 pub(crate) fn steps(path: &[PathPoint], gait: &Gait) -> Result<Steps, Trouble> {
-    Ok(Steps::of(walked(path, gait)?.0, gait.period))
+    Ok(Steps::from_path(
+        select_even_walk(path, gait)?.0,
+        gait.period,
+    ))
 }
 
 /// Selects the part of a path on which the robot walks evenly; returns it with the times of its beginning and end,
 /// s.
-fn walked<'a>(path: &'a [PathPoint], gait: &Gait) -> Result<(&'a [PathPoint], [f64; 2]), Trouble> {
-    let [begin, end] = walk(path, gait)?;
+fn select_even_walk<'a>(
+    path: &'a [PathPoint],
+    gait: &Gait,
+) -> Result<(&'a [PathPoint], [f64; 2]), Trouble> {
+    let [begin, end] = find_even_walk(path, gait)?;
     let first = path.partition_point(|seen| seen.seconds < begin);
     let last = path.partition_point(|seen| seen.seconds <= end);
     let walked = &path[first..last.max(first)];
-    if end - begin < 2.0 * gait.period || Steps::of(walked, gait.period).are_few() {
+    if end - begin < 2.0 * gait.period || Steps::from_path(walked, gait.period).are_few() {
         return Err(too_short(end - begin, gait));
     }
     Ok((walked, [begin, end]))
@@ -128,7 +135,7 @@ fn to_calm(
     let ways: Vec<Place> = places
         .iter()
         .filter_map(|(time, place)| {
-            let begin = begin(path, time - calm * period, period, gait)?;
+            let begin = place_at_beginning(path, time - calm * period, period, gait)?;
             Some(path::of_travel(place.seen_from(begin)))
         })
         .collect();
@@ -143,12 +150,12 @@ fn to_calm(
 /// The place at the beginning of a cycle: the places in the pictures before and after it are moved to it by the
 /// predicted movement, then interpolated. Without the prediction, interpolation would be wrong for a gait that
 /// begins with a jerk. `None` if there is no picture before or after.
-fn begin(path: &[PathPoint], seconds: f64, period: f64, gait: &Gait) -> Option<Place> {
+fn place_at_beginning(path: &[PathPoint], seconds: f64, period: f64, gait: &Gait) -> Option<Place> {
     let after = path.partition_point(|seen| seen.seconds < seconds);
     let (a, b) = (path.get(after.checked_sub(1)?)?, path.get(after)?);
     let by = |seen: &PathPoint| {
         let phase = 1.0 + (seen.seconds - seconds) / period;
-        let moved = path::of_travel(gait.at(phase).seen_from(gait.at(1.0)));
+        let moved = path::of_travel(gait.place_at(phase).seen_from(gait.place_at(1.0)));
         path::compose(seen.place, path::inverse(moved))
     };
     let share = (seconds - a.seconds) / (b.seconds - a.seconds);
@@ -156,11 +163,11 @@ fn begin(path: &[PathPoint], seconds: f64, period: f64, gait: &Gait) -> Option<P
 }
 
 /// Finds the beginning and the end of the time in which the robot walks evenly, s.
-fn walk(path: &[PathPoint], gait: &Gait) -> Result<[f64; 2], Trouble> {
+fn find_even_walk(path: &[PathPoint], gait: &Gait) -> Result<[f64; 2], Trouble> {
     let moves: Vec<(f64, Travel)> = path
         .iter()
         .filter_map(|seen| {
-            let later = path::between(path, seen.seconds + gait.period)?;
+            let later = path::interpolate_at(path, seen.seconds + gait.period)?;
             Some((seen.seconds, later.seen_from(seen.place)))
         })
         .collect();
@@ -196,7 +203,7 @@ fn walk(path: &[PathPoint], gait: &Gait) -> Result<[f64; 2], Trouble> {
     // The longest run of times from which the robot moves as far as usual in a cycle.
     let (mut best, mut run): (Option<[usize; 2]>, Option<usize>) = (None, None);
     for (i, size) in sizes.iter().enumerate() {
-        if *size < WALKS * usual {
+        if *size < MIN_EVEN_SHARE * usual {
             run = None;
             continue;
         }

@@ -21,7 +21,7 @@ const STEP: f64 = 0.5;
 /// Smallest difference of brightness that counts as an edge, in grey levels.
 const LEAST_CONTRAST: f64 = 25.0;
 /// Largest root mean square distance of an edge's places from the fitted line, px.
-const STRAIGHT: f64 = 0.7;
+const MAX_EDGE_DEVIATION: f64 = 0.7;
 /// Number of iterations, each of which fits the lines again from better corners.
 const ROUNDS: usize = 3;
 
@@ -59,7 +59,7 @@ pub(crate) fn refine(picture: &Picture, quad: Quad) -> Option<Square> {
             square.middle += middle / 4.0;
         }
         for i in 0..4 {
-            square.corners[i] = meet(&lines[(i + 3) % 4], &lines[i])?;
+            square.corners[i] = intersect(&lines[(i + 3) % 4], &lines[i])?;
         }
     }
     Some(square)
@@ -122,7 +122,7 @@ fn edge(picture: &Picture, from: Pixel, to: Pixel) -> Option<(Line, f64)> {
     }
     let (offset, slope) = (sum / count as f64, moment / square);
     let off = places.iter().map(|(s, t)| (t - offset - slope * s).powi(2));
-    if (off.sum::<f64>() / count as f64).sqrt() > STRAIGHT {
+    if (off.sum::<f64>() / count as f64).sqrt() > MAX_EDGE_DEVIATION {
         return None;
     }
     let middle = length / 2.0;
@@ -134,7 +134,7 @@ fn edge(picture: &Picture, from: Pixel, to: Pixel) -> Option<(Line, f64)> {
 }
 
 /// The intersection of two lines; `None` if they are parallel.
-fn meet(a: &Line, b: &Line) -> Option<Pixel> {
+fn intersect(a: &Line, b: &Line) -> Option<Pixel> {
     let cross = a.along[0] * b.along[1] - a.along[1] * b.along[0];
     let [x, y] = [b.at[0] - a.at[0], b.at[1] - a.at[1]];
     let far = (x * b.along[1] - y * b.along[0]) / cross;

@@ -9,7 +9,7 @@ use crate::scene::{FloorCorners, Measures, Scene, View};
 use crate::sheet::{CODES, DECK_TAG, FLOOR_TAGS};
 use crate::tags::{self, Tag};
 use crate::trouble::Trouble;
-use crate::watched::{Sight, Watched};
+use crate::watched::{AnalysedFilm, Sight};
 
 /// Smallest distance of a floor tag's corner from its usual place that shows a moved camera, px.
 const MOVED: f64 = 1.0;
@@ -18,7 +18,7 @@ const LOST: f64 = 0.1;
 /// Number of pictures in which the deck tag is used to find the camera.
 const SAMPLES: usize = 8;
 /// Distance beyond the floor tags, measured from their common middle, up to which places are valid, mm.
-const BEYOND: f64 = 200.0;
+const MAX_TAG_DISTANCE: f64 = 200.0;
 /// Largest difference between the deck tag's given height and the height found by its size, mm.
 const HEIGHT: f64 = 12.0;
 
@@ -107,7 +107,7 @@ impl Film {
     /// # Errors
     /// Fails if the tags do not determine camera and path, contradict the setup, or show the robot too far from the
     /// floor tags.
-    pub fn watch(&self, setup: Setup) -> Result<Watched, Trouble> {
+    pub fn watch(&self, setup: Setup) -> Result<AnalysedFilm, Trouble> {
         self.check_tags()?;
         let moved = self.is_moved();
         let measures = Measures {
@@ -148,10 +148,10 @@ impl Film {
             height,
             tilt,
             error: scene.error,
-            moved,
+            has_camera_moved: moved,
             deck,
         };
-        Ok(Watched::new(path, sight, scene, frames, setup.height))
+        Ok(AnalysedFilm::new(path, sight, scene, frames, setup.height))
     }
 
     /// Checks that every floor tag is visible at least once, and the deck tag in most pictures.
@@ -189,7 +189,7 @@ impl Film {
                 .filter_map(|frame| frame.tags[id])
                 .collect();
             std::array::from_fn(|corner| {
-                [0, 1].map(|i| middle(seen.iter().map(|tag| tag[corner][i]).collect()))
+                [0, 1].map(|i| interquartile_mean(seen.iter().map(|tag| tag[corner][i]).collect()))
             })
         })
     }
@@ -255,7 +255,7 @@ impl Film {
         let tags = scene.floor_tags();
         let middle = [0, 1].map(|i| tags.iter().map(|tag| tag[i]).sum::<f64>() / FLOOR_TAGS as f64);
         let from = |[x, y]: [f64; 2]| (x - middle[0]).hypot(y - middle[1]);
-        let reach = tags.into_iter().map(from).fold(0.0, f64::max) + BEYOND;
+        let reach = tags.into_iter().map(from).fold(0.0, f64::max) + MAX_TAG_DISTANCE;
         for seen in path {
             let distance = from([seen.place.forward, seen.place.left]);
             if distance > reach {
@@ -268,7 +268,7 @@ impl Film {
 }
 
 /// The mean of the middle half of the values; there must be at least one.
-fn middle(mut values: Vec<f64>) -> f64 {
+fn interquartile_mean(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     let quarter = values.len() / 4;
     let half = &values[quarter..values.len() - quarter];

@@ -28,7 +28,7 @@ impl Gait {
     }
 
     /// The place at a phase, relative to the start of cycle 0.
-    pub(crate) fn at(&self, phase: f64) -> Place {
+    pub(crate) fn place_at(&self, phase: f64) -> Place {
         let count = self.path.len() - 1;
         let within = phase.rem_euclid(1.0) * count as f64;
         let i = (within as usize).min(count - 1);
@@ -69,7 +69,10 @@ impl Gait {
     /// The predicted movement from a phase to a later one.
     pub(crate) fn step(&self, from: f64, to: f64) -> [f64; 3] {
         let whole = from.floor();
-        movement(self.at(to - whole).seen_from(self.at(from - whole)))
+        movement(
+            self.place_at(to - whole)
+                .seen_from(self.place_at(from - whole)),
+        )
     }
 }
 

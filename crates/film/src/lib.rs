@@ -2,9 +2,9 @@
 //!
 //! A camera looks down on the robot from any place. Tags on the floor show where the camera is, and a tag on the
 //! deck, whose height is known, shows where the robot is ([`sheet`] has the sheet of tags). [`Film::add`] reads the
-//! tags of each picture. [`Film::watch`] finds the camera (`scene.rs`) and the path (`path.rs`). [`Watched::walks`]
-//! finds the walks between the robot's rests (`walks.rs`), [`Watched::likeness`] the gait of a walk (`likeness.rs`).
-//! [`Watched::measure`] finds the cycles of a walk (`cycles.rs`, `clock.rs`), their mean with its error (`mean.rs`)
+//! tags of each picture. [`Film::watch`] finds the camera (`scene.rs`) and the path (`path.rs`). [`AnalysedFilm::walks`]
+//! finds the walks between the robot's rests (`walks.rs`), [`AnalysedFilm::likeness`] the gait of a walk (`likeness.rs`).
+//! [`AnalysedFilm::measure`] finds the cycles of a walk (`cycles.rs`, `clock.rs`), their mean with its error (`mean.rs`)
 //! and the path within them (`within.rs`). Two other measurements use the same tags: [`Slide`] is the friction of the
 //! pads, and [`Turns`] is the response of a single servo. The crate reads no file and prints nothing.
 //!
@@ -59,5 +59,5 @@ pub use trouble::Trouble;
 pub use turns::{DeadBand, Jig, Turns};
 pub use turns_trouble::TurnsTrouble;
 pub use walks::rest;
-pub use watched::{Sight, Watched};
+pub use watched::{AnalysedFilm, Sight};
 pub use within::Point;

@@ -27,7 +27,7 @@ pub enum Likeness {
 }
 
 /// Finds the gait that a path shows.
-pub(crate) fn of(path: &[PathPoint], gaits: &[Gait]) -> Likeness {
+pub(crate) fn find_likeness(path: &[PathPoint], gaits: &[Gait]) -> Likeness {
     let mut fits: Vec<(f64, usize)> = Vec::new();
     let mut slow = (f64::INFINITY, 1);
     let mut trouble = None;

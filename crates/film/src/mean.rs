@@ -28,7 +28,7 @@ pub struct Mean {
 pub(crate) type Cycles = (Vec<f64>, f64);
 
 /// Computes the mean over walks of two cycles or more.
-pub(crate) fn of(walks: &[Cycles]) -> Mean {
+pub(crate) fn mean_of_walks(walks: &[Cycles]) -> Mean {
     let count = walks.iter().map(|(cycles, _)| cycles.len()).sum::<usize>();
     let own = |cycles: &[f64]| cycles.iter().sum::<f64>() / cycles.len() as f64;
     let weighted = |value: &dyn Fn(&Cycles) -> f64| {
@@ -135,7 +135,7 @@ mod tests {
             let films = 4000;
             let within = (0..films).filter(|_| {
                 let cycles: Vec<f64> = (0..count).map(|_| 3.0 + noise()).collect();
-                let mean = of(&[(cycles, 0.0)]);
+                let mean = mean_of_walks(&[(cycles, 0.0)]);
                 (mean.mean - 3.0).abs() < 2.0 * mean.error
             });
             let share = within.count() as f64 / f64::from(films);
@@ -154,7 +154,7 @@ mod tests {
                     ((0..4).map(|_| 3.0 + own + noise()).collect(), 0.0)
                 };
                 let all: Vec<_> = (0..walks).map(&mut walk).collect();
-                let mean = of(&all);
+                let mean = mean_of_walks(&all);
                 (mean.mean - 3.0).abs() < 2.0 * mean.error
             });
             let share = within.count() as f64 / f64::from(films);

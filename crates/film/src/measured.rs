@@ -38,7 +38,7 @@ impl Measured {
                     walk.common_errors()[i],
                 )
             };
-            mean::of(&walks.iter().map(own).collect::<Vec<_>>())
+            mean::mean_of_walks(&walks.iter().map(own).collect::<Vec<_>>())
         };
         let cycles: Vec<Travel> = walks
             .iter()

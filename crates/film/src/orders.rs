@@ -62,13 +62,13 @@ pub fn orders(side: f64) -> Vec<Order> {
 }
 
 /// The indices of the orders for the large steps.
-pub(crate) fn flips() -> Range<usize> {
+pub(crate) fn large_step_indices() -> Range<usize> {
     2..2 + FLIPS
 }
 
 /// The indices of the orders for the visits.
 pub(crate) fn visits() -> Range<usize> {
-    flips().end..flips().end + VISITS.len()
+    large_step_indices().end..large_step_indices().end + VISITS.len()
 }
 
 /// The indices of the orders for the small steps.
@@ -85,7 +85,7 @@ mod tests {
     fn large_steps_are_of_60_deg_to_both_sides_and_small_ones_go_there_and_back() {
         let orders = orders(-1.0);
         let step = |i: usize| orders[i].pulse_angle() - orders[i - 1].pulse_angle();
-        for i in flips() {
+        for i in large_step_indices() {
             let side = if i % 2 == 0 { 1.0 } else { -1.0 };
             assert_eq!(step(i), 2.0 * SIDE * side, "{i}");
         }

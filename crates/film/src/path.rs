@@ -51,7 +51,7 @@ pub(crate) fn unwind(seen: &mut [PathPoint]) {
 }
 
 /// The place at a time, interpolated between two pictures; `None` before the first or after the last picture.
-pub(crate) fn between(path: &[PathPoint], seconds: f64) -> Option<Place> {
+pub(crate) fn interpolate_at(path: &[PathPoint], seconds: f64) -> Option<Place> {
     let after = path.partition_point(|seen| seen.seconds < seconds);
     let b = path.get(after)?;
     let a = &path[after.checked_sub(1).unwrap_or(after)];

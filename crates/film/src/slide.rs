@@ -13,7 +13,7 @@ use crate::figure::Figure;
 use crate::least;
 use crate::mean::widening;
 use crate::path::PathPoint;
-use crate::watched::Watched;
+use crate::watched::AnalysedFilm;
 
 /// Time at the beginning during which the board is level, s.
 const LEVEL: f64 = 1.0;
@@ -32,9 +32,9 @@ const LEAST: usize = 6;
 /// Largest angle between the slide and the downhill direction, and between the robot and that direction, deg.
 const ASIDE: f64 = 30.0;
 /// Largest rate at which the board is lifted, deg/s.
-const LIFTED: f64 = 15.0;
+const MAX_LIFT_RATE: f64 = 15.0;
 /// Half of the time over which a picture's tilt is averaged, s.
-const AROUND: f64 = 0.15;
+const HALF_AVERAGING_TIME: f64 = 0.15;
 
 /// A reason why a film of a tilted board cannot be measured.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -118,7 +118,7 @@ impl Slide {
     ///
     /// # Errors
     /// Fails if the film does not show a robot that slides down a board.
-    pub fn of(watched: &Watched) -> Result<Self, SlideTrouble> {
+    pub fn of(watched: &AnalysedFilm) -> Result<Self, SlideTrouble> {
         let cameras: Vec<_> = watched.cameras().collect();
         let first = watched.path.first().map_or(0.0, |seen| seen.seconds);
         let is_level = |seen: &PathPoint| seen.seconds < first + LEVEL;
@@ -193,11 +193,14 @@ impl Slide {
             let at = moments.partition_point(|moment| moment.seconds < seconds);
             at.min(moments.len() - 1)
         };
-        let (now, before) = (near(begin), near(begin - 2.0 * AROUND).saturating_sub(1));
+        let (now, before) = (
+            near(begin),
+            near(begin - 2.0 * HALF_AVERAGING_TIME).saturating_sub(1),
+        );
         let tilt = tilts[now].to_degrees();
         let apart = moments[now].seconds - moments[before].seconds;
-        let rate = (tilt - tilts[before].to_degrees()) / apart.max(AROUND);
-        if rate > LIFTED {
+        let rate = (tilt - tilts[before].to_degrees()) / apart.max(HALF_AVERAGING_TIME);
+        if rate > MAX_LIFT_RATE {
             return Err(SlideTrouble::Fast { rate });
         }
         let angle_error = LEVEL_SIGMA.hypot(TILT_SIGMA);
@@ -251,7 +254,8 @@ fn mean(moments: &[Moment]) -> [f64; 2] {
 fn smooth(moments: &[Moment]) -> Vec<f64> {
     let at = |seconds: f64| moments.partition_point(|moment| moment.seconds < seconds);
     let one = |moment: &Moment| {
-        let near = &moments[at(moment.seconds - AROUND)..at(moment.seconds + AROUND)];
+        let near = &moments
+            [at(moment.seconds - HALF_AVERAGING_TIME)..at(moment.seconds + HALF_AVERAGING_TIME)];
         let count = near.len() as f64;
         let (mut time, mut tilt) = (0.0, 0.0);
         for other in near {

@@ -14,7 +14,7 @@ const PARTS: [f64; 2] = [0.02, 0.85];
 /// Expected standard deviation of the logarithm of the time constant.
 const SPIN_UP_SIGMA: f64 = 0.7;
 /// Largest standard error of that logarithm with which the film determines the time constant.
-const TOLD: f64 = 0.25;
+const MAX_LOG_ERROR: f64 = 0.25;
 /// Standard error of a time constant because the motor model is simple, as a share.
 const MOTOR: f64 = 0.02;
 /// First estimate of the error of an angle in one picture, deg; the residuals give the true one.
@@ -103,7 +103,7 @@ impl Rates {
                         .collect()
                 })
                 .collect(),
-            spin_up: (error < TOLD).then_some(Figure {
+            spin_up: (error < MAX_LOG_ERROR).then_some(Figure {
                 value: constant,
                 error: constant * error.hypot(MOTOR),
             }),

@@ -37,7 +37,7 @@ const MOVED: f64 = 0.05;
 /// Smallest angle that counts as a movement, as a multiple of its standard error.
 const MOVED_SIGMAS: f64 = 3.0;
 /// Largest movement of a small step that is used for the dead band, deg: after a larger one the servo overshoots.
-const SMALL: f64 = 1.6;
+const MAX_SMALL_MOVEMENT: f64 = 1.6;
 /// Standard error of the dead band's width, deg: the servo does not always stop at its edge.
 const DEAD_BAND_ERROR: f64 = 0.06;
 /// Standard error of the load's torque, as a share: half a millimetre in a lever of 20.
@@ -60,7 +60,7 @@ pub struct DeadBand {
     /// Width, in robot.toml's deg; `None` if no step was large enough.
     pub width: Option<Figure>,
     /// Largest small step that moved nothing, in robot.toml's deg; 0 if all steps moved the servo.
-    pub still: f64,
+    pub largest_ignored_step: f64,
 }
 
 /// A measured servo.
@@ -100,7 +100,7 @@ impl Turns {
         let rests: Vec<Option<f64>> = (0..orders.len())
             .map(|i| turns.rest(begin, PAUSE, i))
             .collect();
-        let [gain, hysteresis] = line(&orders, &rests).ok_or(TurnsTrouble::NotTheSteps)?;
+        let [gain, hysteresis] = fit_gain(&orders, &rests).ok_or(TurnsTrouble::NotTheSteps)?;
         let steps = turns.steps(begin, &rests);
         let few = TurnsTrouble::FewPictures { rate: turns.rate() };
         let groups: Vec<&[Step]> = steps.iter().map(Vec::as_slice).collect();
@@ -117,8 +117,8 @@ impl Turns {
             gain,
             hysteresis,
             dead_band: turns.dead_band(begin, &orders, &rests, gain.value),
-            rate: of_motor(rate),
-            rates: [fit.figure(a, &[1.0, 0.0]), fit.figure(b, &[0.0, 1.0])].map(of_motor),
+            rate: add_model_error(rate),
+            rates: [fit.figure(a, &[1.0, 0.0]), fit.figure(b, &[0.0, 1.0])].map(add_model_error),
             spin_up: fit.spin_up,
             begin,
             pictures: turns.rate(),
@@ -165,7 +165,7 @@ impl Turns {
 }
 
 /// Adds the error of the camera to a figure.
-fn of_camera(figure: Figure) -> Figure {
+fn add_camera_error(figure: Figure) -> Figure {
     Figure {
         error: figure.error.hypot(CAMERA * figure.value),
         ..figure
@@ -173,8 +173,8 @@ fn of_camera(figure: Figure) -> Figure {
 }
 
 /// Adds the errors of the camera and of the motor model to a rate.
-fn of_motor(rate: Figure) -> Figure {
-    let Figure { value, error } = of_camera(rate);
+fn add_model_error(rate: Figure) -> Figure {
+    let Figure { value, error } = add_camera_error(rate);
     Figure {
         value,
         error: error.hypot(MOTOR * value),
@@ -183,7 +183,7 @@ fn of_motor(rate: Figure) -> Figure {
 
 /// Fits gain and hysteresis to the angles at which the horn rests after the visits; `None` if too few are visible.
 /// All visits are reached by moves of the same length, so the horn stops in the same way.
-fn line(orders: &[Order], rests: &[Option<f64>]) -> Option<[Figure; 2]> {
+fn fit_gain(orders: &[Order], rests: &[Option<f64>]) -> Option<[Figure; 2]> {
     let seen: Vec<(f64, f64, f64)> = orders::visits()
         .filter_map(|i| {
             let (before, now) = (orders[i - 1].pulse_angle(), orders[i].pulse_angle());
@@ -200,7 +200,7 @@ fn line(orders: &[Order], rests: &[Option<f64>]) -> Option<[Figure; 2]> {
     let freedom = seen.len().checked_sub(start.len()).filter(|n| *n > 0)?;
     let variance = fit.squares / freedom as f64;
     let error = |i: usize| widening(freedom) * (variance * fit.covariance[(i, i)]).sqrt();
-    let gain = of_camera(Figure {
+    let gain = add_camera_error(Figure {
         value: fit.at[1],
         error: error(1),
     });
@@ -330,7 +330,7 @@ impl Path {
             let time = pair[0].0 + share * (pair[1].0 - pair[0].0);
             Some(time - PAUSE * i as f64 - HALF_WAY)
         };
-        let mut begins: Vec<f64> = orders::flips().filter_map(half_way).collect();
+        let mut begins: Vec<f64> = orders::large_step_indices().filter_map(half_way).collect();
         begins.sort_by(f64::total_cmp);
         begins.get(begins.len() / 2).copied().unwrap_or(begin)
     }
@@ -338,7 +338,7 @@ impl Path {
     /// The large steps, counter-clockwise and clockwise.
     fn steps(&self, begin: f64, rests: &[Option<f64>]) -> [Vec<Step>; 2] {
         let mut steps = [Vec::new(), Vec::new()];
-        for i in orders::flips() {
+        for i in orders::large_step_indices() {
             let (Some(from), Some(to)) = (rests[i - 1], rests[i]) else {
                 continue;
             };
@@ -385,19 +385,22 @@ impl Path {
             let had_moved = std::mem::replace(&mut has_moved, moved > least);
             if !has_moved {
                 still = still.max(ordered.abs());
-            } else if had_moved && moved < SMALL {
+            } else if had_moved && moved < MAX_SMALL_MOVEMENT {
                 // After a movement the servo stands at the edge of its dead band; before one, it may be anywhere
                 // within it.
                 lost.push(ordered.abs() - moved);
             }
         }
         let width = (lost.len() > 1).then(|| {
-            let mean = mean::of(&[(lost, 0.0)]);
+            let mean = mean::mean_of_walks(&[(lost, 0.0)]);
             Figure {
                 value: mean.mean,
                 error: mean.error.hypot(DEAD_BAND_ERROR),
             }
         });
-        DeadBand { width, still }
+        DeadBand {
+            width,
+            largest_ignored_step: still,
+        }
     }
 }

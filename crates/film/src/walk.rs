@@ -13,7 +13,7 @@ pub(crate) struct Walk {
     /// Standard error of all lengths, as a share.
     pub scale: f64,
     /// The deviation of each picture from the predicted path.
-    pub offs: Vec<Deviation>,
+    pub deviations: Vec<Deviation>,
 }
 
 impl Walk {

@@ -10,7 +10,7 @@ use crate::path::PathPoint;
 const REST: f64 = 0.8;
 /// Largest root-mean-square distance of the places in a rest from their mean, mm. The error of a tag's place is
 /// smaller.
-const STILL: f64 = 0.5;
+const MAX_REST_DEVIATION: f64 = 0.5;
 /// Smallest number of pictures of a rest.
 const LEAST: usize = 3;
 /// Ratio of the shortest rest to the longest time for which a gait stands still.
@@ -18,7 +18,7 @@ const MORE: f64 = 1.4;
 
 /// Finds the walks: the times, s, in which the robot moves away between two rests, each extended by half of `rest`
 /// at its beginning and its end. A rest lasts `rest` seconds or more.
-pub(crate) fn of(path: &[PathPoint], rest: f64) -> Vec<[f64; 2]> {
+pub(crate) fn find_walks(path: &[PathPoint], rest: f64) -> Vec<[f64; 2]> {
     let mut rests = vec![false; path.len()];
     for (first, seen) in path.iter().enumerate() {
         let end = path.partition_point(|later| later.seconds < seen.seconds + rest) + 1;
@@ -65,7 +65,7 @@ fn longest_still(gait: &Gait) -> f64 {
     let seconds = |i: usize| i as f64 * gait.period / count as f64;
     let seen = |i: usize| PathPoint {
         seconds: seconds(i),
-        place: gait.at(i as f64 / count as f64),
+        place: gait.place_at(i as f64 / count as f64),
     };
     let path: Vec<PathPoint> = (0..2 * count).map(seen).collect();
     let still = |first: usize| {
@@ -84,7 +84,7 @@ fn is_still(path: &[PathPoint]) -> bool {
         .collect();
     let mean = [0, 1, 2].map(|axis| moves.iter().map(|to| to[axis]).sum::<f64>() / count);
     let away = |to: &[f64; 3]| size([0, 1, 2].map(|axis| to[axis] - mean[axis])).powi(2);
-    path.len() >= LEAST && (moves.iter().map(away).sum::<f64>() / count).sqrt() < STILL
+    path.len() >= LEAST && (moves.iter().map(away).sum::<f64>() / count).sqrt() < MAX_REST_DEVIATION
 }
 
 /// True if the robot moves away from the first place.

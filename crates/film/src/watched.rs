@@ -31,14 +31,14 @@ pub struct Sight {
     /// Root-mean-square error of a floor tag's corner, px.
     pub error: f64,
     /// True if the camera moved during the film.
-    pub moved: bool,
+    pub has_camera_moved: bool,
     /// Height of the deck tag found by its size, mm.
     pub deck: f64,
 }
 
 /// A film whose camera and path are known.
 #[derive(Debug, Clone)]
-pub struct Watched {
+pub struct AnalysedFilm {
     /// The robot's path.
     pub path: Vec<PathPoint>,
     /// The camera.
@@ -50,7 +50,7 @@ pub struct Watched {
     deck: f64,
 }
 
-impl Watched {
+impl AnalysedFilm {
     /// A film with a frame for each place of the path.
     pub(crate) fn new(
         path: Vec<PathPoint>,
@@ -73,17 +73,17 @@ impl Watched {
     /// # Errors
     /// Fails if the path in that time differs from the gait's predicted path, or is too short.
     pub fn measure(&self, gait: &Gait, during: Option<[f64; 2]>) -> Result<Measured, Trouble> {
-        let path = self.part(during);
+        let path = self.path_between(during);
         let cycles = cycles::find(path, gait)?;
-        let doubts = self.doubts(&cycles);
+        let doubts = self.scene_variances(&cycles);
         // A deck tag that is higher than given seems to move farther.
         let scale = (HEIGHT_SIGMA / (self.sight.height - self.deck)).hypot(RULER_SIGMA);
-        let offs = within::offs(path, &cycles, gait);
+        let offs = within::find_deviations(path, &cycles, gait);
         let walk = Walk {
             cycles,
             scene_variances: doubts,
             scale,
-            offs,
+            deviations: offs,
         };
         Ok(Measured::of(vec![walk], gait))
     }
@@ -91,22 +91,22 @@ impl Watched {
     /// Finds the walks, each as the times of its beginning and its end, s, extended by half of `rest`. The robot
     /// rests if it stands still for `rest` seconds; that should be no less than [`rest`](crate::rest) returns.
     pub fn walks(&self, rest: f64) -> Vec<[f64; 2]> {
-        walks::of(&self.path, rest)
+        walks::find_walks(&self.path, rest)
     }
 
     /// Finds which of the gaits the robot walks between two times, s.
     pub fn likeness(&self, gaits: &[Gait], during: [f64; 2]) -> Likeness {
-        likeness::of(self.part(Some(during)), gaits)
+        likeness::find_likeness(self.path_between(Some(during)), gaits)
     }
 
     /// The camera in each picture of the path.
     pub(crate) fn cameras(&self) -> impl Iterator<Item = Camera> {
-        let camera = |frame: &Frame| frame.camera(&self.scene, self.sight.moved);
+        let camera = |frame: &Frame| frame.camera(&self.scene, self.sight.has_camera_moved);
         self.frames.iter().filter_map(camera)
     }
 
     /// The path between two times, s, or all of it.
-    fn part(&self, during: Option<[f64; 2]>) -> &[PathPoint] {
+    fn path_between(&self, during: Option<[f64; 2]>) -> &[PathPoint] {
         let [from, to] = during.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
         let begin = self.path.partition_point(|seen| seen.seconds < from);
         let end = self.path.partition_point(|seen| seen.seconds <= to);
@@ -114,9 +114,9 @@ impl Watched {
     }
 
     /// The variances of the mean cycle that result from the covariance of the scene: forward, left, turn.
-    fn doubts(&self, cycles: &Cycles) -> [f64; 3] {
+    fn scene_variances(&self, cycles: &Cycles) -> [f64; 3] {
         // A camera that moves has its own pose in each picture, so only the five shared parameters count.
-        let count = if self.sight.moved { 5 } else { 11 };
+        let count = if self.sight.has_camera_moved { 5 } else { 11 };
         let scene = &self.scene;
         let nearest = |time: &f64| {
             let frames = self.frames.iter();
@@ -133,7 +133,7 @@ impl Watched {
                 .filter_map(|frame| {
                     Some(PathPoint {
                         seconds: 0.0,
-                        place: frame.place(scene, self.sight.moved)?,
+                        place: frame.place(scene, self.sight.has_camera_moved)?,
                     })
                 })
                 .collect();

@@ -28,7 +28,7 @@ pub struct Point {
 
 impl Point {
     /// The measured place minus the predicted one, in standard errors: forward, left, turn.
-    pub fn differs(&self) -> [f64; 3] {
+    pub fn standardized_differences(&self) -> [f64; 3] {
         [0, 1, 2].map(|axis| {
             let Mean { mean, error, .. } = self.measured[axis];
             (mean - self.predicted[axis]) / error.max(1e-6)
@@ -37,15 +37,18 @@ impl Point {
 }
 
 /// Computes the deviation of each picture within a cycle from the predicted path.
-pub(crate) fn offs(path: &[PathPoint], cycles: &Cycles, gait: &Gait) -> Vec<Deviation> {
+pub(crate) fn find_deviations(path: &[PathPoint], cycles: &Cycles, gait: &Gait) -> Vec<Deviation> {
     let mut offs = Vec::new();
     for (cycle, pair) in cycles.begins.windows(2).enumerate() {
         let (begin, end) = (pair[0], pair[1].seconds);
         let inside = |seen: &&PathPoint| (begin.seconds..end).contains(&seen.seconds);
         for seen in path.iter().filter(inside) {
             let phase = (seen.seconds - begin.seconds) / (end - begin.seconds);
-            let [there, predicted] =
-                [seen.place.seen_from(begin.place), gait.at(phase).travel()].map(parts);
+            let [there, predicted] = [
+                seen.place.seen_from(begin.place),
+                gait.place_at(phase).travel(),
+            ]
+            .map(parts);
             offs.push(Deviation {
                 cycle,
                 phase,
@@ -60,7 +63,7 @@ pub(crate) fn offs(path: &[PathPoint], cycles: &Cycles, gait: &Gait) -> Vec<Devi
 pub(crate) fn points(walks: &[Walk], gait: &Gait) -> Vec<Point> {
     let pictures = walks
         .iter()
-        .map(|walk| walk.offs.len() / walk.cycles.travels.len());
+        .map(|walk| walk.deviations.len() / walk.cycles.travels.len());
     let count = pictures.min().unwrap_or(0).clamp(1, PARTS);
     let mut points: Vec<Point> = (0..count)
         .filter_map(|part| point(walks, gait, part, count))
@@ -85,7 +88,7 @@ fn own(mean: Mean) -> f64 {
 /// Computes the point of one of `count` parts of the cycle; `None` if too few pictures show that part.
 fn point(walks: &[Walk], gait: &Gait, part: usize, count: usize) -> Option<Point> {
     let phase = (part as f64 + 0.5) / count as f64;
-    let predicted = parts(gait.at(phase).travel());
+    let predicted = parts(gait.place_at(phase).travel());
     let pace = gait.pace(phase);
     let mean = |axis: usize| {
         let own = |walk: &Walk| {
@@ -102,7 +105,7 @@ fn point(walks: &[Walk], gait: &Gait, part: usize, count: usize) -> Option<Point
         };
         let walks: Vec<_> = walks.iter().filter_map(own).collect();
         (!walks.is_empty()).then(|| {
-            let mut mean = mean::of(&walks);
+            let mut mean = mean::mean_of_walks(&walks);
             mean.mean += predicted[axis];
             mean
         })
@@ -118,7 +121,7 @@ fn point(walks: &[Walk], gait: &Gait, part: usize, count: usize) -> Option<Point
 fn in_cycles(walk: &Walk, part: usize, count: usize, axis: usize) -> Vec<f64> {
     let is_here = |off: &&Deviation| (off.phase * count as f64) as usize == part;
     let cycle = |cycle: usize| {
-        let here = walk.offs.iter().filter(|off| off.cycle == cycle);
+        let here = walk.deviations.iter().filter(|off| off.cycle == cycle);
         let here: Vec<f64> = here.filter(is_here).map(|off| off.off[axis]).collect();
         (!here.is_empty()).then(|| here.iter().sum::<f64>() / here.len() as f64)
     };

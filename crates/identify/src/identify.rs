@@ -10,8 +10,8 @@ use nalgebra::DMatrix;
 
 use crate::card::{self, Card};
 use crate::chi_square::percentile_99;
-use crate::key::{COUNT, KEYS, PLAY, RATIO, TWIST};
-use crate::outcome::{Found, Goodness, Identified, Row, Verdict};
+use crate::key::{KEY_COUNT, KEYS, PLAY, RATIO, TWIST};
+use crate::outcome::{Goodness, Identified, KeyResult, Row, Verdict};
 use crate::problem::{Problem, Solution, UNKNOWNS, Values, split};
 use crate::trouble::Trouble;
 use crate::way::MeasuredMovement;
@@ -41,7 +41,7 @@ pub type RunAll<'a> = &'a dyn Fn(usize, &(dyn Fn(usize) -> Travel + Sync)) -> Ve
 pub fn identify(
     robot: &Robot,
     ways: &[MeasuredMovement],
-    each: RunAll,
+    run_all: RunAll,
 ) -> Result<Identified, Trouble> {
     let mut ways = ways.to_vec();
     let mut walks = Vec::new();
@@ -52,8 +52,8 @@ pub fn identify(
             return Err(Trouble::MovesNoServo(way.gait.clone()));
         }
         let numbers = way.mean.iter().chain(&way.error);
-        let right = numbers.chain([&way.pace]).all(|figure| figure.is_finite());
-        if !right || way.pace <= 0.0 || way.error.iter().any(|error| *error < 0.0) {
+        let is_all_finite = numbers.chain([&way.pace]).all(|figure| figure.is_finite());
+        if !is_all_finite || way.pace <= 0.0 || way.error.iter().any(|error| *error < 0.0) {
             return Err(Trouble::NoNumber(way.gait.clone()));
         }
         let decided = robot.predict(gait);
@@ -73,12 +73,12 @@ pub fn identify(
         for (key, value) in KEYS.iter().zip(values) {
             key.set(&mut ground, *value);
         }
-        each(walks.len(), &|i| {
+        run_all(walks.len(), &|i| {
             let (gait, pace): (&CheckedGait, f64) = walks[i];
-            gait.driven(&ground, &motors, pace)
+            gait.simulate_driven_cycle(&ground, &motors, pace)
         })
     };
-    let start = std::array::from_fn(|i| KEYS[i].of(robot.ground()));
+    let start = std::array::from_fn(|i| KEYS[i].value_in(robot.ground()));
     solve(&ways, start, &predict)
 }
 
@@ -106,16 +106,16 @@ pub(crate) fn solve(
     };
     let errors = errors(&problem, &full).map(|error| widened * error);
     let (last, verdicts) = choose(&problem, &full, &errors)?;
-    let card_only_fit = problem.fit(&all[COUNT..], &problem.start_unknowns());
-    let still = card_only_fit.ok_or(Trouble::NoFit)?;
-    let differences = problem.differences(&last.at).into_iter().enumerate();
-    let run_all = differences.flat_map(|(row, parts)| {
+    let card_only_fit = problem.fit(&all[KEY_COUNT..], &problem.start_unknowns());
+    let card_only = card_only_fit.ok_or(Trouble::NoFit)?;
+    let differences = problem.differences(&last.unknowns).into_iter().enumerate();
+    let all_differences = differences.flat_map(|(row, parts)| {
         let parts = parts.into_iter().enumerate();
         parts.map(move |(part, difference)| (row, part, difference))
     });
-    let worst = run_all.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()));
-    let after = split(&last.at).0;
-    let found = |(i, key): (usize, &'static crate::Key)| Found {
+    let worst = all_differences.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()));
+    let after = split(&last.unknowns).0;
+    let found = |(i, key): (usize, &'static crate::Key)| KeyResult {
         key,
         before: start[i],
         after: after[i],
@@ -123,27 +123,27 @@ pub(crate) fn solve(
         verdict: verdicts[i],
     };
     let seen = problem
-        .predicted_on_card(&still.at)
+        .predicted_on_card(&card_only.unknowns)
         .into_iter()
-        .zip(problem.predicted_on_card(&last.at));
+        .zip(problem.predicted_on_card(&last.unknowns));
     let rows = ways.iter().zip(seen);
     let row = |(way, (before, after)): (&MeasuredMovement, _)| Row {
         way: way.clone(),
         before,
         after,
     };
-    let card: [f64; card::COUNT] = std::array::from_fn(|i| errors[COUNT + i]);
+    let card: [f64; card::COUNT] = std::array::from_fn(|i| errors[KEY_COUNT + i]);
     Ok(Identified {
         keys: KEYS.iter().enumerate().map(found).collect(),
-        card: [split(&last.at).1, Card::from(card)],
+        card: [split(&last.unknowns).1, Card::from(card)],
         correlated: correlated_pairs(&full.covariance),
         goodness: Goodness {
             figures: problem.figures(),
-            chi_square: [still.chi_square, last.chi_square, full.chi_square],
+            chi_square: [card_only.chi_square, last.chi_square, full.chi_square],
             freedom,
-            limit,
-            explains,
-            widened,
+            chi_square_limit: limit,
+            is_explained: explains,
+            error_factor: widened,
             worst: worst.ok_or(Trouble::NothingDetermined)?,
         },
         rows: rows.map(row).collect(),
@@ -211,15 +211,15 @@ fn fit_all(problem: &Problem) -> Result<Fit, Trouble> {
 /// in both directions, and the others follow by their correlation with it. In a linear model the sum of squares
 /// would rise by four; where it rises less, the error is enlarged accordingly.
 fn errors(problem: &Problem, full: &Solution) -> [f64; UNKNOWNS] {
-    let least = problem.cost(&full.at);
+    let least = problem.cost(&full.unknowns);
     std::array::from_fn(|i| {
         let error = full.covariance[(i, i)].max(0.0).sqrt();
-        if i >= COUNT || error > MAX_ERROR_SHARE * problem.prior_errors[i] {
+        if i >= KEY_COUNT || error > MAX_ERROR_SHARE * problem.prior_errors[i] {
             return error;
         }
         let rise = |side: f64| {
             let along = |j: usize| {
-                full.at[j] + side * MIN_DISTANCE_ERRORS * full.covariance[(j, i)] / error
+                full.unknowns[j] + side * MIN_DISTANCE_ERRORS * full.covariance[(j, i)] / error
             };
             problem.cost(&std::array::from_fn(along)) - least
         };
@@ -242,12 +242,12 @@ fn choose(
     problem: &Problem,
     full: &Solution,
     errors: &[f64; UNKNOWNS],
-) -> Result<(Solution, [Verdict; COUNT]), Trouble> {
-    let mut verdicts = [Verdict::Moved; COUNT];
-    let mut guess = full.at;
+) -> Result<(Solution, [Verdict; KEY_COUNT]), Trouble> {
+    let mut verdicts = [Verdict::Moved; KEY_COUNT];
+    let mut guess = full.unknowns;
     let mut covariance = full.covariance.clone();
     let before = problem.start_unknowns();
-    for key in 0..COUNT {
+    for key in 0..KEY_COUNT {
         if errors[key] > MAX_ERROR_SHARE * problem.prior_errors[key] {
             verdicts[key] = Verdict::Undetermined;
             hold(key, &before, &mut guess, &mut covariance);
@@ -266,7 +266,7 @@ fn choose(
         };
         let free: Vec<usize> = (0..UNKNOWNS).filter(is_free).collect();
         let last = problem.fit(&free, &guess).ok_or(Trouble::NoFit)?;
-        guess = last.at;
+        guess = last.unknowns;
         if next_to_hold(&verdicts, &guess, &before, errors).is_none() {
             return Ok((last, verdicts));
         }
@@ -275,12 +275,12 @@ fn choose(
 
 /// The next key to return to the file's value, and the reason; `None` if all free keys may keep their new values.
 fn next_to_hold(
-    verdicts: &[Verdict; COUNT],
+    verdicts: &[Verdict; KEY_COUNT],
     at: &[f64; UNKNOWNS],
     before: &[f64; UNKNOWNS],
     errors: &[f64; UNKNOWNS],
 ) -> Option<(usize, Verdict)> {
-    let free = || (0..COUNT).filter(|&i| verdicts[i] == Verdict::Moved);
+    let free = || (0..KEY_COUNT).filter(|&i| verdicts[i] == Verdict::Moved);
     let distance = |i: usize| (at[i] - before[i]).abs() / errors[i];
     let nearest = free().min_by(|&a, &b| distance(a).total_cmp(&distance(b)))?;
     if distance(nearest) < MIN_DISTANCE_ERRORS {
@@ -313,7 +313,7 @@ fn hold(
 fn correlated_pairs(
     covariance: &DMatrix<f64>,
 ) -> Vec<(&'static crate::Key, &'static crate::Key, f64)> {
-    let pairs = (0..COUNT).flat_map(|i| (0..i).map(move |j| (j, i)));
+    let pairs = (0..KEY_COUNT).flat_map(|i| (0..i).map(move |j| (j, i)));
     let correlated = pairs.map(|(i, j)| {
         let scale = (covariance[(i, i)] * covariance[(j, j)]).sqrt();
         (&KEYS[i], &KEYS[j], covariance[(i, j)] / scale)

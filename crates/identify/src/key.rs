@@ -26,11 +26,11 @@ pub struct Key {
 }
 
 /// Number of keys.
-pub(crate) const COUNT: usize = 7;
+pub(crate) const KEY_COUNT: usize = 7;
 
 /// The keys, in the order of robot.toml. Other numbers of the ground cannot be distinguished from these: a stiffer
 /// foot acts like a longer one, and more mass like more friction.
-pub const KEYS: [Key; COUNT] = [
+pub const KEYS: [Key; KEY_COUNT] = [
     Key {
         name: "leg.mount",
         list_index: None,
@@ -127,7 +127,7 @@ impl Key {
     }
 
     /// The key's value in the ground of a robot.
-    pub fn of(&self, ground: &Ground) -> f64 {
+    pub fn value_in(&self, ground: &Ground) -> f64 {
         *(self.field)(&mut { *ground })
     }
 

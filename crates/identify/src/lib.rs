@@ -33,6 +33,6 @@ mod way;
 pub use card::Card;
 pub use identify::{RunAll, identify};
 pub use key::{KEYS, Key};
-pub use outcome::{Found, Goodness, Identified, Row, Verdict};
+pub use outcome::{Goodness, Identified, KeyResult, Row, Verdict};
 pub use trouble::Trouble;
 pub use way::{MeasuredMovement, PARTS};

@@ -8,7 +8,7 @@ use crate::way::MeasuredMovement;
 #[derive(Clone, Debug)]
 pub struct Identified {
     /// The keys in the order of [`crate::KEYS`].
-    pub keys: Vec<Found>,
+    pub keys: Vec<KeyResult>,
     /// The position of the card, and the standard errors of its parameters.
     pub card: [Card; 2],
     /// Pairs of keys whose errors are correlated by more than 0.8, with the correlation.
@@ -21,7 +21,7 @@ pub struct Identified {
 
 /// The result for one key.
 #[derive(Clone, Debug)]
-pub struct Found {
+pub struct KeyResult {
     /// The key.
     pub key: &'static Key,
     /// Value in the file.
@@ -58,12 +58,12 @@ pub struct Goodness {
     /// Degrees of freedom: the number of figures less those that the fit of all keys used up.
     pub freedom: f64,
     /// Sum of squares that 1 % of correct models exceed; 0 without a degree of freedom.
-    pub limit: f64,
+    pub chi_square_limit: f64,
     /// True if the model explains the measurements: with all keys free, the sum of squares is not above the limit
     /// that 1 % of correct models exceed, or there is no degree of freedom.
-    pub explains: bool,
+    pub is_explained: bool,
     /// Factor by which all errors were widened.
-    pub widened: f64,
+    pub error_factor: f64,
     /// Row, part and value of the largest difference with the new values, in standard errors.
     pub worst: (usize, usize, f64),
 }
@@ -82,13 +82,13 @@ pub struct Row {
 
 impl Identified {
     /// The keys that are moved.
-    pub fn moved(&self) -> impl Iterator<Item = &Found> {
+    pub fn moved(&self) -> impl Iterator<Item = &KeyResult> {
         let keys = self.keys.iter();
         keys.filter(|found| found.verdict == Verdict::Moved)
     }
 }
 
-impl Found {
+impl KeyResult {
     /// Number of decimals of the value: enough to show two digits of the standard error.
     pub fn digits(&self) -> usize {
         let first = -self.error.log10().floor();

@@ -13,13 +13,13 @@ use lizard_robot::Travel;
 use nalgebra::{DMatrix, DVector};
 
 use crate::card::{self, Card};
-use crate::key::{COUNT, KEYS, PLAY};
+use crate::key::{KEY_COUNT, KEYS, PLAY};
 use crate::way::MeasuredMovement;
 
 /// Values of the keys, in the order of [`KEYS`].
-pub(crate) type Values = [f64; COUNT];
+pub(crate) type Values = [f64; KEY_COUNT];
 /// Number of unknowns: the keys, then the card's parameters.
-pub(crate) const UNKNOWNS: usize = COUNT + card::COUNT;
+pub(crate) const UNKNOWNS: usize = KEY_COUNT + card::COUNT;
 /// Standard deviation of the model's roughness around a smooth model, mm and deg: servos have a dead band and pads
 /// stick, so a small change of a key may shift a step by a frame.
 pub(crate) const MODEL_ERROR: f64 = 0.05;
@@ -30,7 +30,7 @@ const MIN_PROMISED_GAIN: f64 = 0.1;
 /// wrong derivatives.
 const ROUGHNESS_GAIN: f64 = 2.0;
 /// Largest number of steps of a fit.
-const STEPS: usize = 12;
+const MAX_STEPS: usize = 12;
 /// Largest number of halvings of a step that does not reduce the sum of squares.
 const HALVINGS: usize = 2;
 /// Distance from the point of the derivatives, in steps of a key, beyond which they are recomputed during a fit.
@@ -58,7 +58,7 @@ pub(crate) struct Problem<'a> {
 #[derive(Clone, Debug)]
 pub(crate) struct Solution {
     /// Values of all unknowns; those that were held have their start values.
-    pub at: [f64; UNKNOWNS],
+    pub unknowns: [f64; UNKNOWNS],
     /// Covariance of the free unknowns, in their order.
     pub covariance: DMatrix<f64>,
     /// Sum of squares of the measured movements alone, without the prior.
@@ -105,7 +105,7 @@ impl<'a> Problem<'a> {
 
     /// Differences of the measured movements from those of the model, in standard errors.
     pub fn differences(&self, at: &[f64; UNKNOWNS]) -> Vec<[f64; 3]> {
-        self.in_errors(&self.predicted_on_card(at), |part, mean| mean - part)
+        self.divide_by_errors(&self.predicted_on_card(at), |part, mean| mean - part)
     }
 
     /// Sum of squares that a fit of all unknowns minimises: differences of movements, and deviations from the prior
@@ -119,7 +119,7 @@ impl<'a> Problem<'a> {
 
     /// Combines each predicted part with the measured one by `of`, and divides the result by its standard error, which
     /// includes the model's roughness.
-    fn in_errors(&self, parts: &[[f64; 3]], of: impl Fn(f64, f64) -> f64) -> Vec<[f64; 3]> {
+    fn divide_by_errors(&self, parts: &[[f64; 3]], of: impl Fn(f64, f64) -> f64) -> Vec<[f64; 3]> {
         let each = self.ways.iter().zip(parts);
         let scaled = |(way, parts): (&MeasuredMovement, &[f64; 3])| {
             std::array::from_fn(|i| of(parts[i], way.mean[i]) / way.error[i].hypot(MODEL_ERROR))
@@ -176,7 +176,7 @@ impl<'a> Problem<'a> {
         };
         let mut here = residuals(&at);
         let mut covariance = DMatrix::zeros(0, 0);
-        for _ in 0..STEPS {
+        for _ in 0..MAX_STEPS {
             let slopes = self.slopes(free, &at);
             let gradient = slopes.tr_mul(&here);
             covariance = slopes.tr_mul(&slopes).cholesky()?.inverse();
@@ -211,7 +211,7 @@ impl<'a> Problem<'a> {
         let chi_square: f64 = differences.iter().map(|part| part * part).sum();
         let is_known = chi_square.is_finite() && covariance.iter().all(|part| part.is_finite());
         is_known.then_some(Solution {
-            at,
+            unknowns: at,
             covariance,
             chi_square,
         })
@@ -242,7 +242,9 @@ impl<'a> Problem<'a> {
             for (there, here) in there.iter_mut().zip(&here) {
                 *there = std::array::from_fn(|i| (here[i] - there[i]) / step);
             }
-            let scaled = self.in_errors(&there, |slope, _| slope).into_flattened();
+            let scaled = self
+                .divide_by_errors(&there, |slope, _| slope)
+                .into_flattened();
             for (row, slope) in scaled.iter().enumerate() {
                 slopes[(row, column)] = *slope;
             }
@@ -278,6 +280,6 @@ fn above_least(values: Values) -> Values {
 
 /// Splits the unknowns into the values of the keys and the card.
 pub(crate) fn split(at: &[f64; UNKNOWNS]) -> (Values, Card) {
-    let card: [f64; card::COUNT] = std::array::from_fn(|i| at[COUNT + i]);
+    let card: [f64; card::COUNT] = std::array::from_fn(|i| at[KEY_COUNT + i]);
     (std::array::from_fn(|i| at[i]), card.into())
 }

@@ -2,7 +2,7 @@
 
 use lizard_robot::{Robot, edit};
 
-use crate::outcome::{Found, Identified};
+use crate::outcome::{Identified, KeyResult};
 use crate::trouble::Trouble;
 
 impl Identified {
@@ -26,7 +26,7 @@ impl Identified {
 }
 
 /// Writes the value of a key, which is one number or a list, with a comment about the numbers that moved.
-fn with_key(text: &str, numbers: &[&Found]) -> Result<String, edit::NoSuchKey> {
+fn with_key(text: &str, numbers: &[&KeyResult]) -> Result<String, edit::NoSuchKey> {
     let name = numbers[0].key.name;
     let values: Vec<f64> = numbers.iter().map(|found| found.written()).collect();
     let new = match numbers[0].key.list_index {
@@ -38,7 +38,7 @@ fn with_key(text: &str, numbers: &[&Found]) -> Result<String, edit::NoSuchKey> {
     edit::with_comment(&new, name, "measured:", &words.join("; "))
 }
 
-impl Found {
+impl KeyResult {
     fn is_moved(&self) -> bool {
         self.verdict == crate::Verdict::Moved
     }

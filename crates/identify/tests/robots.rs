@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::thread;
 
 use fastrand::Rng;
-use lizard_identify::{Found, Identified, KEYS, MeasuredMovement, Verdict, identify};
+use lizard_identify::{Identified, KEYS, KeyResult, MeasuredMovement, Verdict, identify};
 use lizard_robot::{CheckedGait, Ground, Robot, Travel};
 
 /// Standard error of a measured mean, mm and deg: that of about eight cycles.
@@ -53,7 +53,7 @@ fn filmed_movements(robot: &Robot, ground: &Ground, rng: &mut Rng) -> Vec<Measur
             forward,
             left,
             turn,
-        } = gait.driven(ground, &motors, 1.0);
+        } = gait.simulate_driven_cycle(ground, &motors, 1.0);
         MeasuredMovement {
             gait: gait.name().to_owned(),
             pace: 1.0,
@@ -98,7 +98,7 @@ impl Trial {
         }
     }
 
-    fn keys(&self) -> impl Iterator<Item = (f64, &Found)> {
+    fn keys(&self) -> impl Iterator<Item = (f64, &KeyResult)> {
         self.changes.into_iter().zip(&self.identified.keys)
     }
 }
@@ -136,7 +136,7 @@ fn keys_that_were_changed_are_found_within_two_errors_and_right_ones_stay() {
         let goodness = &trial.identified.goodness;
         println!(
             "{}: chi-square {:.0} of {:.0}",
-            trial.name, goodness.chi_square[1], goodness.limit
+            trial.name, goodness.chi_square[1], goodness.chi_square_limit
         );
         for (change, found) in trial.keys() {
             let by = found.after - found.before;

@@ -23,7 +23,7 @@ impl Jacobian {
     /// Largest and smallest singular value, mm per radian.
     pub fn singular_values(&self) -> [f64; 2] {
         let (sum, det) = (
-            self.left.square() + self.right.square(),
+            self.left.length_squared() + self.right.length_squared(),
             self.determinant().abs(),
         );
         let largest = ((sum + 2.0 * det).sqrt() + (sum - 2.0 * det).max(0.0).sqrt()) / 2.0;
@@ -38,10 +38,10 @@ impl FiveBarPose {
     /// the left coupler reads l2 . v = l2 . (velocity of its crank tip). Not finite at a
     /// type-2 singularity, where the end point is loose.
     pub fn jacobian(&self) -> Jacobian {
-        let (left, right) = self.pull();
+        let (left, right) = self.coupler_velocities();
         Jacobian {
-            left: self.right_coupler.right() * (left / self.type2),
-            right: self.left_coupler.left() * (right / self.type2),
+            left: self.right_coupler.rotated_right() * (left / self.type2),
+            right: self.left_coupler.rotated_left() * (right / self.type2),
         }
     }
 
@@ -51,10 +51,10 @@ impl FiveBarPose {
     pub fn lci(&self) -> f64 {
         // The index has no scale, so the factor 1/type2 is left out and nothing
         // blows up near the type-2 singularity.
-        let (left, right) = self.pull();
+        let (left, right) = self.coupler_velocities();
         let scaled = Jacobian {
-            left: self.right_coupler.right() * left,
-            right: self.left_coupler.left() * right,
+            left: self.right_coupler.rotated_right() * left,
+            right: self.left_coupler.rotated_left() * right,
         };
         let [largest, smallest] = scaled.singular_values();
         if largest > 0.0 {
@@ -66,7 +66,7 @@ impl FiveBarPose {
 
     /// Velocity along each coupler per rate of its crank, mm per radian: the
     /// diagonal of B.
-    fn pull(&self) -> (f64, f64) {
+    fn coupler_velocities(&self) -> (f64, f64) {
         (
             -self.bars.crank_left * self.type1_left(),
             self.bars.crank_right * self.type1_right(),

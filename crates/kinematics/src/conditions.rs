@@ -36,8 +36,8 @@ impl<T: Real> FiveBarPose<T> {
             (of_end(Check::TYPE2), self.type2),
             (arm_left, self.type1_left()),
             (arm_right, self.type1_right()),
-            (leg_left, leg::margin(self.left)),
-            (leg_right, leg::margin(self.right)),
+            (leg_left, leg::margin(self.left_crank)),
+            (leg_right, leg::margin(self.right_crank)),
             (of_end(Check::UNCROSSED), self.gap.x),
         ]
     }

@@ -14,7 +14,7 @@ use crate::vector::Vector;
 /// The passive joints, chassis frame. phi and s of a slider stand for the
 /// paper's theta10, theta11 (right: theta14, theta15).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Passive {
+pub struct PassiveJoints {
     /// Head, left coupler: degrees, (-180, 180].
     pub theta2: f64,
     /// Head, right coupler: degrees, (-180, 180].
@@ -35,7 +35,7 @@ pub struct Passive {
 
 /// Determinants of the four diagonal blocks of K*.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Blocks {
+pub struct BlockDeterminants {
     /// l2 l3 sin(theta2 - theta3), mm^2.
     pub head: f64,
     /// l7 l8 sin(theta6 - theta7), mm^2.
@@ -46,7 +46,7 @@ pub struct Blocks {
     pub right: f64,
 }
 
-impl Blocks {
+impl BlockDeterminants {
     /// det K*, mm^6: the product of the four block determinants.
     pub fn determinant(&self) -> f64 {
         self.head * self.tail * self.left * self.right
@@ -55,8 +55,8 @@ impl Blocks {
 
 impl Solution {
     /// The passive joints of this solution.
-    pub fn passive(&self) -> Passive {
-        Passive {
+    pub fn passive(&self) -> PassiveJoints {
+        PassiveJoints {
             theta2: self.theta2(),
             theta3: self.theta3(),
             theta6: self.theta6(),
@@ -75,15 +75,15 @@ impl Solution {
         for (row, end) in ROWS.into_iter().zip(End::ALL) {
             let ([left, right], pose) = (end.servos(), self.end(end));
             let bars = &pose.bars;
-            let crank = end.mirror(pose.left) * bars.crank_left;
-            put_entry(&mut k, row, left, crank.left());
-            let crank = end.mirror(pose.right) * bars.crank_right;
-            put_entry(&mut k, row, right, -crank.left());
+            let crank = end.mirror(pose.left_crank) * bars.crank_left;
+            put_entry(&mut k, row, left, crank.rotated_left());
+            let crank = end.mirror(pose.right_crank) * bars.crank_right;
+            put_entry(&mut k, row, right, -crank.rotated_left());
         }
         for (row, side) in ROWS.into_iter().skip(2).zip(Side::ALL) {
             let ([front, rear], pose) = (side.servos(), self.side(side));
-            put_entry(&mut k, row, front, pose.front_arm().left());
-            put_entry(&mut k, row, rear, -pose.rear_tip.left());
+            put_entry(&mut k, row, front, pose.front_arm().rotated_left());
+            put_entry(&mut k, row, rear, -pose.rear_tip.rotated_left());
         }
         k
     }
@@ -94,26 +94,31 @@ impl Solution {
         let mut k = [[0.0; 8]; 8];
         for (row, end) in ROWS.into_iter().zip(End::ALL) {
             let ([left, right], bars) = (self.couplers(end), &self.end(end).bars);
-            put_entry(&mut k, row, row, (left * bars.coupler_left).left());
-            put_entry(&mut k, row, row + 1, -(right * bars.coupler_right).left());
+            put_entry(&mut k, row, row, (left * bars.coupler_left).rotated_left());
+            put_entry(
+                &mut k,
+                row,
+                row + 1,
+                -(right * bars.coupler_right).rotated_left(),
+            );
         }
         for (row, side) in ROWS.into_iter().skip(2).zip(Side::ALL) {
             let slider = self.side(side);
-            put_entry(&mut k, row, row, -slider.span.left());
+            put_entry(&mut k, row, row, -slider.span.rotated_left());
             put_entry(&mut k, row, row + 1, slider.span * (-1.0 / slider.d));
         }
         k
     }
 
     /// The determinants of the blocks of K*, whose product is det K*.
-    pub fn blocks(&self) -> Blocks {
+    pub fn blocks(&self) -> BlockDeterminants {
         let block = |end: End| {
             let pose = self.end(end);
             let lengths = pose.bars.coupler_left * pose.bars.coupler_right;
             // Mirroring changes the sign of the sine.
             -end.sign() * lengths * pose.type2
         };
-        Blocks {
+        BlockDeterminants {
             head: block(End::Head),
             tail: block(End::Tail),
             left: -self.left.d,
@@ -125,7 +130,7 @@ impl Solution {
 impl Lizard {
     /// The residuals of the eight loop equations for any values of the joints, mm; zero at
     /// a solution. Active angles in servo order.
-    pub fn residual(&self, active: [f64; 4], passive: &Passive) -> [f64; 8] {
+    pub fn residual(&self, active: [f64; 4], passive: &PassiveJoints) -> [f64; 8] {
         let (shafts, cis) = (self.shafts(), Vector::direction);
         let couplers = [
             [passive.theta2, passive.theta3],

@@ -125,10 +125,10 @@ struct LoopDerivatives {
 
 /// Solves the first and second time derivative of l1 u1 + l2 u2 = l0 + l4 u4 + l3 u3 for the couplers.
 fn loop_derivatives(pose: &FiveBarPose, crank_left: Spin, crank_right: Spin) -> LoopDerivatives {
-    let r1 = pose.left * pose.bars.crank_left;
+    let r1 = pose.left_crank * pose.bars.crank_left;
     let r2 = pose.left_coupler * pose.bars.coupler_left;
     let r3 = pose.right_coupler * pose.bars.coupler_right;
-    let r4 = pose.right * pose.bars.crank_right;
+    let r4 = pose.right_crank * pose.bars.crank_right;
     let (u2, u3) = (pose.left_coupler, pose.right_coupler);
     // The unknown rates x of theta2 and y of theta3 obey x left(r2) - y left(r3) = c; the dot product with u3
     // isolates x, that with u2 isolates y.
@@ -139,23 +139,24 @@ fn loop_derivatives(pose: &FiveBarPose, crank_left: Spin, crank_right: Spin) -> 
         )
     };
     let (w1, w4) = (crank_left.rate, crank_right.rate);
-    let (w2, w3) = free(r4.left() * w4 - r1.left() * w1);
+    let (w2, w3) = free(r4.rotated_left() * w4 - r1.rotated_left() * w1);
     let inward = r1 * (w1 * w1) + r2 * (w2 * w2) - r3 * (w3 * w3) - r4 * (w4 * w4);
     let (e1, e4) = (crank_left.acceleration, crank_right.acceleration);
-    let (e2, e3) = free(inward + r4.left() * e4 - r1.left() * e1);
+    let (e2, e3) = free(inward + r4.rotated_left() * e4 - r1.rotated_left() * e1);
     LoopDerivatives {
         left: Spin::new(w2, e2),
         right: Spin::new(w3, e3),
         point: Derivative {
-            rate: r1.left() * w1 + r2.left() * w2,
-            acceleration: end_acceleration(r1, crank_left) + r2.left() * e2 - r2 * (w2 * w2),
+            rate: r1.rotated_left() * w1 + r2.rotated_left() * w2,
+            acceleration: end_acceleration(r1, crank_left) + r2.rotated_left() * e2
+                - r2 * (w2 * w2),
         },
     }
 }
 
 /// Acceleration of the moving end of a link that turns about its other end.
 fn end_acceleration(link: Vector, spin: Spin) -> Vector {
-    link.left() * spin.acceleration - link * (spin.rate * spin.rate)
+    link.rotated_left() * spin.acceleration - link * (spin.rate * spin.rate)
 }
 
 /// Rates and accelerations of the slider's direction (radians) and length (mm).
@@ -165,7 +166,7 @@ fn slider_derivatives(
     (front, front_spin): (Vector, Spin),
 ) -> (Spin, Derivative<f64>) {
     let along = pose.span * (1.0 / pose.d);
-    let v = front.left() * front_spin.rate - rear.left() * rear_spin.rate;
+    let v = front.rotated_left() * front_spin.rate - rear.rotated_left() * rear_spin.rate;
     let a = end_acceleration(front, front_spin) - end_acceleration(rear, rear_spin);
     let (slide, turn) = (v.dot(along), along.cross(v) / pose.d);
     (

@@ -30,14 +30,14 @@ pub enum Fault {
     /// below 1e-75 mm overflow in the computation.
     NotFinite,
     /// The crank tips are further apart than both couplers reach.
-    Apart {
+    TooFarApart {
         /// Distance between the crank tips.
         gap: f64,
         /// Sum of the couplers.
         reach: f64,
     },
     /// The crank tips are closer than the couplers differ in length.
-    Nested {
+    TooClose {
         /// Distance between the crank tips.
         gap: f64,
         /// Difference of the couplers.
@@ -68,11 +68,11 @@ impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::NotFinite => f.write_str("a value is not a finite number"),
-            Self::Apart { gap, reach } => write!(
+            Self::TooFarApart { gap, reach } => write!(
                 f,
                 "the crank tips are {gap:.3} mm apart, the couplers reach {reach:.3} mm"
             ),
-            Self::Nested { gap, least } => write!(
+            Self::TooClose { gap, least } => write!(
                 f,
                 "the crank tips are {gap:.3} mm apart, the couplers need {least:.3} mm"
             ),

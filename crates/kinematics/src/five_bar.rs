@@ -55,9 +55,9 @@ pub struct FiveBarPose<T = f64> {
     /// Links of the five-bar.
     pub bars: FiveBar,
     /// Direction of the left crank, length one.
-    pub left: Vector<T>,
+    pub left_crank: Vector<T>,
     /// Direction of the right crank, length one.
-    pub right: Vector<T>,
+    pub right_crank: Vector<T>,
     /// Tip of the left crank, mm.
     pub left_tip: Vector<T>,
     /// Tip of the right crank, mm.
@@ -102,14 +102,14 @@ impl<T: Real> FiveBarPose<T> {
     /// positive for an outward elbow.
     #[inline(always)]
     pub fn type1_left(&self) -> T {
-        self.left_coupler.cross(self.left)
+        self.left_coupler.cross(self.left_crank)
     }
 
     /// Type-1 margin of the right arm, sin(theta3 - theta4), -1 to 1: 0 where crank and coupler line up, positive for
     /// an outward elbow.
     #[inline(always)]
     pub fn type1_right(&self) -> T {
-        self.right.cross(self.right_coupler)
+        self.right_crank.cross(self.right_coupler)
     }
 
     /// A number that is finite if and only if every number of the pose is finite, since it is computed from all of
@@ -150,7 +150,7 @@ impl FiveBar {
     /// that the robot is built in. Loops of this size close within 1e-12 mm.
     ///
     /// # Errors
-    /// Returns [`Fault::Apart`] and [`Fault::Nested`] if the couplers cannot reach each other, [`Fault::Coincident`]
+    /// Returns [`Fault::TooFarApart`] and [`Fault::TooClose`] if the couplers cannot reach each other, [`Fault::Coincident`]
     /// if the end point is free, [`Fault::NotFinite`] for input that is not finite or that overflows.
     ///
     /// ```
@@ -189,7 +189,7 @@ impl FiveBar {
         left: Vector,
         right: Vector,
     ) -> Result<FiveBarPose, Fault> {
-        let pose = self.shape(mode, left, right);
+        let pose = self.pose_unchecked(mode, left, right);
         self.check(&pose)?;
         Ok(pose)
     }
@@ -218,9 +218,9 @@ impl FiveBar {
         if !d.is_finite() || !reach.is_finite() {
             Err(Fault::NotFinite)
         } else if d > reach {
-            Err(Fault::Apart { gap: d, reach })
+            Err(Fault::TooFarApart { gap: d, reach })
         } else if d < min {
-            Err(Fault::Nested { gap: d, least: min })
+            Err(Fault::TooClose { gap: d, least: min })
         } else if d < MIN_GAP {
             Err(Fault::Coincident)
         } else if !probe.is_finite() {
@@ -233,7 +233,7 @@ impl FiveBar {
     /// The pose at crank directions of length one, without checking that the loop closes: the pose is meaningless if
     /// it does not, see [`FiveBar::closes`]. The compiler leaves out the parts that the caller does not use.
     #[inline(always)]
-    pub fn shape<T: Real>(
+    pub fn pose_unchecked<T: Real>(
         &self,
         mode: AssemblyMode,
         left: Vector<T>,
@@ -242,7 +242,7 @@ impl FiveBar {
         let left_tip = Vector::of(self.left_shaft()) + left * self.crank_left;
         let right_tip = Vector::of(self.right_shaft()) + right * self.crank_right;
         let gap = right_tip - left_tip;
-        let square = gap.square();
+        let square = gap.length_squared();
         let (l2, l3) = (self.coupler_left, self.coupler_right);
         let area = match mode {
             AssemblyMode::Ahead => double_area(l2, l3, square.root()),
@@ -251,13 +251,13 @@ impl FiveBar {
         // Foot of the perpendicular from the end point to the line between the tips, and the end point's height over
         // that line, both in units of the gap.
         let along = (square + T::of((l2 - l3) * (l2 + l3))) / (square * 2.0);
-        let rise = gap.left().scaled(area / square);
+        let rise = gap.rotated_left().scaled(area / square);
         let from_left = gap.scaled(along) + rise;
         let from_right = gap.scaled(along - T::of(1.0)) + rise;
         FiveBarPose {
             bars: *self,
-            left,
-            right,
+            left_crank: left,
+            right_crank: right,
             left_tip,
             right_tip,
             left_coupler: from_left * (1.0 / l2),

@@ -104,7 +104,7 @@ mod readme {}
 
 pub use angle::{atan2, sin_cos, sin_cos_all, wrap};
 pub use conditioning::Jacobian;
-pub use constraints::{Blocks, Passive};
+pub use constraints::{BlockDeterminants, PassiveJoints};
 pub use derivatives::{Derivative, Derivatives, Drive};
 pub use end::End;
 pub use fault::{Fault, Infeasible, Part};

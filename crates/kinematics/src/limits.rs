@@ -27,7 +27,7 @@ pub struct Limits {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Violation {
     /// The condition that is out of bounds.
-    pub what: Check,
+    pub check: Check,
     /// The value of the condition: a sine for margins, mm for stroke and crossing.
     pub value: f64,
     /// The violated limit, in the same unit.
@@ -36,7 +36,11 @@ pub struct Violation {
 
 impl fmt::Display for Violation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { what, value, limit } = *self;
+        let Self {
+            check: what,
+            value,
+            limit,
+        } = *self;
         // Rounded to the digits that are shown, without the sign of a zero.
         let rounded = |scale: f64| libm::round(value * scale) / scale + 0.0;
         let (thousandths, hundredths) = (rounded(1e3), rounded(100.0));
@@ -66,7 +70,7 @@ impl fmt::Display for Violation {
 impl Limits {
     /// The violation of a condition's limit by a value (a sine, or mm); `None` if the value is
     /// safe. A value at its limit is safe, but crank tips at 0 mm count as crossed.
-    pub fn broken(&self, check: Check, value: f64) -> Option<Violation> {
+    pub fn violation_of(&self, check: Check, value: f64) -> Option<Violation> {
         let below = |limit: f64| (value < limit).then_some(limit);
         let limit = match check {
             Check::Type2Head | Check::Type2Tail => below(self.type2),
@@ -79,7 +83,7 @@ impl Limits {
             Check::UncrossedHead | Check::UncrossedTail => (value <= 0.0).then_some(0.0),
         };
         limit.map(|limit| Violation {
-            what: check,
+            check,
             value,
             limit,
         })
@@ -95,7 +99,7 @@ impl Limits {
         let limits = *self;
         solution
             .conditions()
-            .filter_map(move |(what, value)| limits.broken(what, value))
+            .filter_map(move |(what, value)| limits.violation_of(what, value))
     }
 
     /// Every limit that a five-bar breaks by itself, as the given end, for any pose of the
@@ -108,11 +112,11 @@ impl Limits {
         let limits = *self;
         pose.conditions(end)
             .into_iter()
-            .filter_map(move |(what, value)| limits.broken(what, value))
+            .filter_map(move |(what, value)| limits.violation_of(what, value))
     }
 
     /// True if a solved pose breaks no limit.
-    pub fn allow(&self, solution: &Solution) -> bool {
+    pub fn is_safe(&self, solution: &Solution) -> bool {
         self.violations(solution).next().is_none()
     }
 }

@@ -271,7 +271,7 @@ impl Lizard {
     pub fn shape_end<T: Real>(&self, end: End, cranks: [Vector<T>; 4]) -> FiveBarPose<T> {
         let [left, right] = end.pick(cranks);
         self.end(end)
-            .shape(AssemblyMode::Ahead, end.mirror(left), end.mirror(right))
+            .pose_unchecked(AssemblyMode::Ahead, end.mirror(left), end.mirror(right))
     }
 
     /// The slider of a side at crank directions in servo order (length one, chassis frame); only the side's own two

@@ -55,8 +55,8 @@ impl Side {
     #[inline(always)]
     pub fn front_arm<T: Real>(self, crank: Vector<T>) -> Vector<T> {
         match self {
-            Self::Left => crank.left(),
-            Self::Right => crank.right(),
+            Self::Left => crank.rotated_left(),
+            Self::Right => crank.rotated_right(),
         }
     }
 
@@ -65,8 +65,8 @@ impl Side {
     #[inline(always)]
     pub fn rear_arm<T: Real>(self, crank: Vector<T>) -> Vector<T> {
         match self {
-            Self::Left => crank.right(),
-            Self::Right => crank.left(),
+            Self::Left => crank.rotated_right(),
+            Self::Right => crank.rotated_left(),
         }
     }
 

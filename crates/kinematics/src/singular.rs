@@ -122,13 +122,13 @@ impl Singularity {
 /// The intersections of two circles: none or two, which are equal if the circles touch.
 fn circle_intersections(a: Vector, r: f64, b: Vector, s: f64) -> impl Iterator<Item = Vector> {
     let between = b - a;
-    let square = between.square();
+    let square = between.length_squared();
     let along = (square + (r - s) * (r + s)) / (2.0 * square);
     let rise = (r * r / square - along * along).sqrt();
     // Circles that do not intersect, or are concentric, give NaN or infinity.
     let points = rise.is_finite().then(|| {
         let foot = a + between * along;
-        let up = between.left() * rise;
+        let up = between.rotated_left() * rise;
         [foot + up, foot - up]
     });
     points.into_iter().flatten()
@@ -219,7 +219,7 @@ mod tests {
         let state = |left: usize, right: usize| {
             let (left, right) = (left as f64 / 2.0 + 0.25, right as f64 / 2.0 + 0.25);
             let pose = HEAD.forward(left, right).ok()?;
-            let leg = pose.left.y.abs().min(pose.right.y.abs());
+            let leg = pose.left_crank.y.abs().min(pose.right_crank.y.abs());
             (pose.margin().min(leg) >= 0.3).then_some(pose.gap.x > 0.0)
         };
         let grid: Vec<Option<bool>> = (0..N * N).map(|i| state(i / N, i % N)).collect();

@@ -47,12 +47,12 @@ impl<T: Real> Vector<T> {
     /// Length in the unit of the components.
     #[inline(always)]
     pub fn length(self) -> T {
-        self.square().root()
+        self.length_squared().root()
     }
 
     /// Square of the vector's length.
     #[inline(always)]
-    pub fn square(self) -> T {
+    pub fn length_squared(self) -> T {
         self.dot(self)
     }
 
@@ -70,13 +70,13 @@ impl<T: Real> Vector<T> {
 
     /// The vector turned by +90 degrees; exact.
     #[inline(always)]
-    pub fn left(self) -> Self {
+    pub fn rotated_left(self) -> Self {
         Self::new(-self.y, self.x)
     }
 
     /// The vector turned by -90 degrees; exact.
     #[inline(always)]
-    pub fn right(self) -> Self {
+    pub fn rotated_right(self) -> Self {
         Self::new(self.y, -self.x)
     }
 

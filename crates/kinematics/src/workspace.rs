@@ -40,7 +40,7 @@ impl Workspace {
     /// True if the end point can reach a point of the five-bar's frame.
     pub fn contains(&self, point: Vector) -> bool {
         [-self.half_base, self.half_base].into_iter().all(|x| {
-            let square = (point - Vector::new(x, 0.0)).square();
+            let square = (point - Vector::new(x, 0.0)).length_squared();
             square >= self.inner * self.inner && square <= self.outer * self.outer
         })
     }

@@ -22,6 +22,6 @@ pub use board::height_of_board;
 pub use expected::expected;
 pub use named::{Gaits, NamedWalk};
 pub use part::{MAX_AGREEING_ERRORS, PARTS, Part, verdict};
-pub use report::{GaitReport, Report, Within};
+pub use report::{GaitReport, PhasePoint, Report};
 pub use sheet::Paper;
 pub use watched_film::WatchedFilm;

@@ -10,7 +10,7 @@ use crate::expected::expected;
 use crate::watched_film::{Walk, WatchedFilm};
 
 /// Least speed of the gaits that are considered if the user names none, mm/s at a pace of 1.
-const SLOWEST: f64 = 3.0;
+const MIN_SPEED: f64 = 3.0;
 
 /// A gait and the path that it is predicted to take.
 #[derive(Debug)]
@@ -64,7 +64,7 @@ impl<'a> Gaits<'a> {
     }
 
     /// The gaits that a walk can have: those that the user names, or all if the user names none.
-    pub(crate) fn known(&self) -> &[Candidate<'a>] {
+    pub(crate) fn candidates(&self) -> &[Candidate<'a>] {
         match self.named.is_empty() {
             true => self.all(),
             false => &self.named,
@@ -76,7 +76,7 @@ impl<'a> Gaits<'a> {
             let moving = self.robot.gaits().iter().filter(|gait| gait.moves());
             let all = moving.map(|gait| Candidate::new(self.robot, gait, self.pace));
             // A gait that stays in its place would lengthen the least rest between two walks too much.
-            let goes = |own: &Candidate| own.expected.speed() > SLOWEST * self.pace;
+            let goes = |own: &Candidate| own.expected.speed() > MIN_SPEED * self.pace;
             all.filter(goes).collect()
         })
     }
@@ -88,7 +88,7 @@ impl<'a> Gaits<'a> {
     /// resembles no gait clearly, or if a walk does not fit its gait.
     pub fn walks<'f>(&self, films: &'f [WatchedFilm]) -> Result<Vec<NamedWalk<'f>>, String> {
         let expected: Vec<Gait> = self
-            .known()
+            .candidates()
             .iter()
             .map(|own| own.expected.clone())
             .collect();
@@ -100,11 +100,11 @@ impl<'a> Gaits<'a> {
         }
         let measured = walks.into_iter().enumerate().map(|(i, walk)| {
             let gait = match names {
-                0 => self.recognized(walk)?,
+                0 => self.recognize_gait(walk)?,
                 1 => 0,
                 _ => i,
             };
-            let candidate = &self.known()[gait];
+            let candidate = &self.candidates()[gait];
             let measured = walk
                 .film
                 .watched
@@ -141,7 +141,7 @@ impl<'a> Gaits<'a> {
         let own = own.ok_or_else(|| Trouble::NoGait.to_string())?;
         let walk = Walk {
             film,
-            during: during.or_else(|| film.duration()).unwrap_or_default(),
+            during: during.or_else(|| film.time_range()).unwrap_or_default(),
         };
         let measured = film.watched.measure(&own.expected, during);
         let measured = measured.map_err(|trouble| self.mismatch_message(walk, own, trouble))?;
@@ -154,7 +154,7 @@ impl<'a> Gaits<'a> {
 
     /// Recognises the gait of a walk and returns its index; fails with a message if the walk resembles no
     /// gait, or two.
-    fn recognized(&self, walk: Walk) -> Result<usize, String> {
+    fn recognize_gait(&self, walk: Walk) -> Result<usize, String> {
         let name = |number: usize| self.all()[number].name();
         let (why, hint) = match self.likeness(walk) {
             Likeness::One(number) => return Ok(number),

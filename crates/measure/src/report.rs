@@ -54,10 +54,10 @@ pub struct GaitReport<'a> {
     /// Turn in a cycle, deg, counter-clockwise positive.
     pub turn: Part,
     /// The movement of each cycle.
-    each: Vec<Way>,
+    each: Vec<CycleMovement>,
     /// The mean path within a cycle, and the point at which it is farthest from the predicted one.
-    pub within: Vec<Within>,
-    farthest: Option<Farthest>,
+    pub within: Vec<PhasePoint>,
+    farthest: Option<LargestDifference>,
     /// Movement per cycle according to MuJoCo with ideal servos: mm ahead and to the left, deg.
     #[serde(skip_serializing_if = "Option::is_none")]
     mujoco: Option<[f64; 3]>,
@@ -84,7 +84,7 @@ struct Span<'a> {
 
 /// A point of the path within a cycle.
 #[derive(Debug, Serialize)]
-pub struct Within {
+pub struct PhasePoint {
     /// Phase of the cycle, 0 to 1.
     phase: f64,
     /// Distance ahead since the beginning of the cycle, mm.
@@ -97,7 +97,7 @@ pub struct Within {
 
 /// The largest difference within a cycle.
 #[derive(Debug, Serialize)]
-struct Farthest {
+struct LargestDifference {
     phase: f64,
     part: &'static str,
     /// Measured less predicted, mm or deg.
@@ -108,7 +108,7 @@ struct Farthest {
 }
 
 #[derive(Debug, Serialize)]
-struct Way {
+struct CycleMovement {
     forward: f64,
     left: f64,
     turn: f64,
@@ -135,7 +135,7 @@ struct CameraLine {
 impl<'a> Span<'a> {
     fn new(gaits: &Gaits<'a>, own: &NamedWalk<'a>, differs: bool) -> Self {
         let [from, to] = own.walk.during;
-        let name = gaits.known()[own.gait].name();
+        let name = gaits.candidates()[own.gait].name();
         // The likeness matters only if the walk differs from its prediction.
         let like = if differs {
             gaits.resembled_gait(own.walk)
@@ -151,11 +151,11 @@ impl<'a> Span<'a> {
     }
 }
 
-impl Farthest {
+impl LargestDifference {
     /// The point with the largest difference in standard errors, among the parts that are predicted.
     fn of(points: &[Point], predicted: [Option<f64>; 3]) -> Option<Self> {
         let all = points.iter().flat_map(|point| {
-            let differs = point.differs();
+            let differs = point.standardized_differences();
             (0..3).map(move |axis| (point, axis, differs[axis]))
         });
         let known = all.filter(|(_, axis, _)| predicted[*axis].is_some());
@@ -216,14 +216,14 @@ impl<'a> GaitReport<'a> {
                 let known = predicted[i].is_some().then_some(point.predicted[i]);
                 Part::new(point.measured[i], known)
             };
-            Within {
+            PhasePoint {
                 phase: point.phase,
                 forward: part(0),
                 left: part(1),
                 turn: part(2),
             }
         };
-        let way = |travel: &Travel| Way {
+        let way = |travel: &Travel| CycleMovement {
             forward: travel.forward,
             left: travel.left,
             turn: travel.turn,
@@ -244,7 +244,7 @@ impl<'a> GaitReport<'a> {
             turn,
             each: measured.cycles.iter().map(way).collect(),
             within: measured.within.iter().map(within).collect(),
-            farthest: Farthest::of(&measured.within, predicted),
+            farthest: LargestDifference::of(&measured.within, predicted),
             mujoco: None,
             range: None,
             expected: &own.expected.path,
@@ -303,7 +303,7 @@ impl<'a> Report<'a> {
     ) -> Self {
         let mut of_gaits: Vec<(&Candidate, Vec<&NamedWalk>)> = Vec::new();
         for walk in walks {
-            let own = &gaits.known()[walk.gait];
+            let own = &gaits.candidates()[walk.gait];
             match of_gaits
                 .iter_mut()
                 .find(|(other, _)| other.name() == own.name())
@@ -322,7 +322,7 @@ impl<'a> Report<'a> {
                     tilt: sight.tilt,
                     focal: sight.focal,
                     corners: sight.error,
-                    moved: sight.moved,
+                    moved: sight.has_camera_moved,
                     deck: setup.height,
                     deck_by_size: sight.deck,
                 },

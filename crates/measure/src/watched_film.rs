@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use lizard_film::Watched;
+use lizard_film::AnalysedFilm;
 
 /// A film after evaluation, with its name.
 #[derive(Debug, Clone)]
@@ -10,7 +10,7 @@ pub struct WatchedFilm {
     /// The name in messages, such as its path.
     pub name: String,
     /// The camera and the robot's path in the film.
-    pub watched: Watched,
+    pub watched: AnalysedFilm,
 }
 
 impl WatchedFilm {
@@ -19,7 +19,7 @@ impl WatchedFilm {
     pub(crate) fn walks(&self, rest: f64) -> Vec<Walk<'_>> {
         let mut walks = self.watched.walks(rest);
         if walks.is_empty() {
-            walks.extend(self.duration());
+            walks.extend(self.time_range());
         }
         let walk = |during| Walk { film: self, during };
         walks.into_iter().map(walk).collect()
@@ -27,7 +27,7 @@ impl WatchedFilm {
 
     /// Times of the first and the last position of the robot, s; `None` if there are fewer than two
     /// positions.
-    pub(crate) fn duration(&self) -> Option<[f64; 2]> {
+    pub(crate) fn time_range(&self) -> Option<[f64; 2]> {
         match &self.watched.path[..] {
             [first, .., last] => Some([first.seconds, last.seconds]),
             _ => None,

@@ -22,9 +22,9 @@ use loose::{INPUTS, LOOSE_ITEMS, RADIO, Row};
 
 /// Mass per volume of a printed part, g/mm^3: PLA of 1.24 g/cm^3 with three lines of wall and a third of infill.
 /// The sum over all parts is within 10 % of PrusaSlicer's estimate.
-const PRINTED: f64 = 1.0e-3;
+const PRINTED_DENSITY: f64 = 1.0e-3;
 /// Mass per volume of a pad, which is nearly all wall, g/mm^3: TPU of 1.21 g/cm^3.
-const RUBBERY: f64 = 1.15e-3;
+const PAD_DENSITY: f64 = 1.15e-3;
 /// Hours of printing for each piece, whatever its mass, in layers of 0.2 mm on an Ender 3. With the hours for
 /// each gram, the sum over all parts is within 10 % of PrusaSlicer's estimate.
 const HOURS_A_PIECE: f64 = 0.02;
@@ -32,15 +32,15 @@ const HOURS_A_PIECE: f64 = 0.02;
 const HOURS_A_GRAM: f64 = 0.095;
 /// Masses of bought parts, g. Those of the battery and of a spring's steel are per mm^3; those whose names end
 /// in `MM` are per mm of length.
-const SERVO: f64 = 9.5;
-const HORN: f64 = 0.8;
-const BOARD: f64 = 25.0;
-const BATTERY: f64 = 1.1e-3;
-const STEEL: f64 = 7.85e-3;
-const SCREW_MM: f64 = 0.044;
+const SERVO_GRAMS: f64 = 9.5;
+const HORN_GRAMS: f64 = 0.8;
+const BOARD_GRAMS: f64 = 25.0;
+const BATTERY_DENSITY: f64 = 1.1e-3;
+const STEEL_DENSITY: f64 = 7.85e-3;
+const SCREW_GRAMS_PER_MM: f64 = 0.044;
 const SCREW_HEAD: f64 = 0.25;
-const STANDOFF_MM: f64 = 0.06;
-const NUT: f64 = 0.4;
+const STANDOFF_GRAMS_PER_MM: f64 = 0.06;
+const NUT_GRAMS: f64 = 0.4;
 const HORN_SCREW: f64 = 0.1;
 const SERVO_SCREW: f64 = 0.2;
 
@@ -67,7 +67,11 @@ pub struct Item {
 
 impl Item {
     fn printed(part: &Part) -> Self {
-        let density = if part.rubbery { RUBBERY } else { PRINTED };
+        let density = if part.rubbery {
+            PAD_DENSITY
+        } else {
+            PRINTED_DENSITY
+        };
         let grams = density * part.volume();
         Self {
             hours: Some(HOURS_A_PIECE + HOURS_A_GRAM * grams),
@@ -89,7 +93,7 @@ impl Item {
     }
 
     /// Mass of all pieces of the row, g.
-    fn all(&self) -> f64 {
+    fn total_grams(&self) -> f64 {
         self.count as f64 * self.grams
     }
 
@@ -133,16 +137,19 @@ fn bought(body: &Body, assembly: &Assembly, hold: Option<&SpringEffect>) -> (Str
     let parts = assembly.robot().parts();
     let diameter = parts.screw.diameter;
     match body.kind {
-        Kind::Printed => (String::new(), PRINTED * volume(&body.prisms)),
-        Kind::Servo => ("servo SG-90 with its horn and screws".to_owned(), SERVO),
-        Kind::Horn => (String::new(), HORN),
+        Kind::Printed => (String::new(), PRINTED_DENSITY * volume(&body.prisms)),
+        Kind::Servo => (
+            "servo SG-90 with its horn and screws".to_owned(),
+            SERVO_GRAMS,
+        ),
+        Kind::Horn => (String::new(), HORN_GRAMS),
         Kind::Screw(length) | Kind::HexScrew(length) => {
             let head = match body.kind {
                 Kind::Screw(_) => "button head (ISO 7380)",
                 _ => "hexagon head (ISO 4017)",
             };
             let what = format!("screw M{diameter} x {length}, {head}");
-            (what, SCREW_HEAD + SCREW_MM * length)
+            (what, SCREW_HEAD + SCREW_GRAMS_PER_MM * length)
         }
         Kind::ServoScrew => (String::new(), SERVO_SCREW),
         Kind::HornScrew(length) => {
@@ -152,11 +159,11 @@ fn bought(body: &Body, assembly: &Assembly, hold: Option<&SpringEffect>) -> (Str
         }
         Kind::Lead => (String::new(), 0.0),
         Kind::Fitting(fitting) => (fitting.what(), fitting.facts().grams),
-        Kind::Pad => (String::new(), RUBBERY * volume(&body.prisms)),
-        Kind::Nut => (format!("lock nut M{diameter} (DIN 985)"), NUT),
+        Kind::Pad => (String::new(), PAD_DENSITY * volume(&body.prisms)),
+        Kind::Nut => (format!("lock nut M{diameter} (DIN 985)"), NUT_GRAMS),
         Kind::Standoff(length) => {
             let what = format!("standoff M{diameter}, {length} mm, thread in both ends");
-            (what, STANDOFF_MM * length)
+            (what, STANDOFF_GRAMS_PER_MM * length)
         }
         Kind::Spring => {
             let (wire, outer, length) =
@@ -167,14 +174,14 @@ fn bought(body: &Body, assembly: &Assembly, hold: Option<&SpringEffect>) -> (Str
             });
             (
                 format!("tension spring, {coil}{pull}"),
-                spring(&parts.spring),
+                spring_grams(&parts.spring),
             )
         }
-        Kind::Board => ("Arduino UNO".to_owned(), BOARD),
+        Kind::Board => ("Arduino UNO".to_owned(), BOARD_GRAMS),
         Kind::Battery => {
             let [x, y, z] = parts.battery;
             let what = format!("battery, two lithium cells, at most {x} x {y} x {z} mm");
-            (what, BATTERY * x * y * z)
+            (what, BATTERY_DENSITY * x * y * z)
         }
     }
 }
@@ -190,8 +197,8 @@ fn price(kind: Kind) -> Price {
 }
 
 /// Mass of the spring of a strut, g.
-pub(crate) fn spring(coil: &Coil) -> f64 {
-    STEEL * coil_volume(coil)
+pub(crate) fn spring_grams(coil: &Coil) -> f64 {
+    STEEL_DENSITY * coil_volume(coil)
 }
 
 /// Mass of a body, g.
@@ -202,7 +209,7 @@ pub(crate) fn grams(body: &Body, assembly: &Assembly) -> f64 {
 /// Volume of a spring's wire, mm^3: its coils, and three more for the hooks.
 fn coil_volume(coil: &Coil) -> f64 {
     use std::f64::consts::PI;
-    (coil.coils() + 3.0) * PI * coil.mean() * PI * coil.wire * coil.wire / 4.0
+    (coil.coils() + 3.0) * PI * coil.mean_diameter() * PI * coil.wire * coil.wire / 4.0
 }
 
 /// The row for strips with a grain; `None` for plain pads.
@@ -236,7 +243,7 @@ impl Bill {
             if !what.is_empty() {
                 list.entry(what).or_insert((0, mass, price(body.kind))).0 += 1;
             }
-            let [x, y, z] = middle(&body.prisms);
+            let [x, y, z] = centroid(&body.prisms);
             let at = assembly.place(body.mount, pose).map(Vector::new(x, y));
             grams += mass;
             for (sum, part) in moment.iter_mut().zip([at.y, -at.x, z]) {
@@ -252,7 +259,7 @@ impl Bill {
         let bought =
             bought.map(|(what, (count, grams, price))| Item::bought(count, what, grams, price));
         let loose_items = LOOSE_ITEMS.map(Item::loose);
-        grams += loose_items.iter().map(Item::all).sum::<f64>();
+        grams += loose_items.iter().map(Item::total_grams).sum::<f64>();
         let bought: Vec<_> = bought.chain(loose_items).collect();
         Self {
             printed: printed(false),
@@ -291,7 +298,7 @@ impl Bill {
 }
 
 /// The centroid of a body in its own frame, mm.
-fn middle(prisms: &[Prism]) -> [f64; 3] {
+fn centroid(prisms: &[Prism]) -> [f64; 3] {
     let (mut volume, mut sum) = (0.0, [0.0; 3]);
     for prism in prisms {
         let outline = Outline::of(prism);
@@ -360,7 +367,7 @@ impl fmt::Display for Bill {
                 format!("kind = \"strut\"\nforce = {force:.2}\nrate = {rate:.3}")
             }
             None => {
-                writeln!(f, "{RIGID}")?;
+                writeln!(f, "{RIGID_TEXT}")?;
                 "kind = \"rigid\"".to_owned()
             }
         };
@@ -431,6 +438,6 @@ const SIZES_TEXT: &str = "
 ";
 
 /// The guide's text about rigid struts.
-const RIGID: &str = "The struts are rigid: a foot follows its servo but for the play of pins and gears. A foot that is caught \
+const RIGID_TEXT: &str = "The struts are rigid: a foot follows its servo but for the play of pins and gears. A foot that is caught \
                      can stall its servo, which gets hot and may burn out; a strut with a spring is no help there. Watch the robot while it \
                      walks, and switch the servos' supply off when a foot is caught.";

@@ -58,7 +58,7 @@ impl SpringEffect {
             for (_, phase) in gait.frames() {
                 let sweeps = robot.sweeps(gait.table_angles(phase));
                 for (leg, sweep) in sweeps.into_iter().enumerate() {
-                    let (lag, torque) = strut.end(leg, sweep);
+                    let (lag, torque) = strut.slot_end(leg, sweep);
                     let values = [strut.lever(leg, sweep), lag, torque];
                     for (range, value) in ranges.iter_mut().zip(values) {
                         *range = [range[0].min(value), range[1].max(value)];
@@ -69,7 +69,7 @@ impl SpringEffect {
         let [lever, way, end] = ranges;
         let ground = robot.ground();
         Some(Self {
-            installed: robot.hung(),
+            installed: robot.mounted_spring_length(),
             force: strut.force,
             rate: strut.rate,
             lever,

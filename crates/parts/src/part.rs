@@ -26,7 +26,7 @@ pub struct Part {
     /// The layers as printed: from z = 0 up, the larger face below.
     pub prisms: Vec<Prism>,
     /// True if the part is turned over for printing.
-    pub turned: bool,
+    pub is_turned_over: bool,
     /// True if the part is printed in a rubbery filament, TPU.
     pub rubbery: bool,
     /// The part that it may replace; `None` for a standard part of the robot.
@@ -43,7 +43,7 @@ impl Part {
             name: name.to_owned(),
             bodies: vec![name.to_owned()],
             prisms,
-            turned: false,
+            is_turned_over: false,
             rubbery: false,
             instead_of: None,
             mark: String::new(),
@@ -62,22 +62,22 @@ impl Part {
 
     /// The layers as printed, with the mark and with closed holes where a hole would begin in mid-air; and the number
     /// of closed holes.
-    pub fn printed(&self) -> (Vec<Prism>, usize) {
-        let marked = mark::engraved(&self.prisms, &self.mark);
-        roof::closed(&marked.unwrap_or_else(|| self.prisms.clone()))
+    pub fn printed_layers(&self) -> (Vec<Prism>, usize) {
+        let marked = mark::engrave_mark(&self.prisms, &self.mark);
+        roof::close_unsupported_holes(&marked.unwrap_or_else(|| self.prisms.clone()))
     }
 
     /// Centres of the closed holes, which are drilled later, in the frame of the printed part, mm.
     pub fn closed_holes(&self) -> Vec<Vector> {
-        roof::in_air(&self.prisms)
+        roof::unsupported_hole_centres(&self.prisms)
     }
 
     /// The motion from the printed part to the position of a body, in that body's frame.
     pub fn print_to_body(&self, body: &Body) -> PrintToBody {
         let [low, high] = body.z();
         PrintToBody {
-            flipped: self.turned,
-            lift: if self.turned { high } else { low },
+            flipped: self.is_turned_over,
+            lift: if self.is_turned_over { high } else { low },
             frame: frame(body),
         }
     }
@@ -153,14 +153,14 @@ fn servo_digits(names: &[String]) -> String {
 fn distinct_parts(bodies: &[Body]) -> Vec<Part> {
     let mut parts: Vec<Part> = Vec::new();
     for body in bodies.iter().filter(|body| body.kind.is_printed()) {
-        let (prisms, turned) = as_printed(body);
+        let (prisms, turned) = print_layers(body);
         match parts
             .iter_mut()
             .find(|part| are_equal(&part.prisms, &prisms))
         {
             Some(part) => part.bodies.push(body.name.clone()),
             None => parts.push(Part {
-                turned,
+                is_turned_over: turned,
                 rubbery: body.kind == Kind::Pad,
                 ..Part::single(&body.name, prisms)
             }),
@@ -181,7 +181,7 @@ fn distinct_parts(bodies: &[Body]) -> Vec<Part> {
 
 /// A body's layers as printed, and true if the body is turned over for printing. The first shape is at the origin
 /// and the first bar along x, so equal parts have equal layers wherever they are used.
-fn as_printed(body: &Body) -> (Vec<Prism>, bool) {
+fn print_layers(body: &Body) -> (Vec<Prism>, bool) {
     let area = |prism: Option<&Prism>| prism.map_or(0.0, |prism| Outline::of(prism).area());
     let turned = area(body.prisms.first()) < 0.7 * area(body.prisms.last());
     let [low, high] = body.z();
@@ -195,8 +195,8 @@ fn as_printed(body: &Body) -> (Vec<Prism>, bool) {
         if turned { shape.mirrored() } else { shape }
     };
     let prism = |prism: &Prism| Prism {
-        add: prism.add.iter().map(lay).collect(),
-        cut: prism.cut.iter().map(lay).collect(),
+        filled_shapes: prism.filled_shapes.iter().map(lay).collect(),
+        cut_shapes: prism.cut_shapes.iter().map(lay).collect(),
         z: match turned {
             true => [high - prism.z[1], high - prism.z[0]],
             false => prism.z.map(|z| z - low),
@@ -216,11 +216,11 @@ fn frame(body: &Body) -> Placement {
     if body.mount == Mount::Chassis {
         return Placement::CHASSIS;
     }
-    let shapes = || body.prisms.iter().flat_map(|prism| &prism.add);
+    let shapes = || body.prisms.iter().flat_map(|prism| &prism.filled_shapes);
     let first = shapes().next();
     let at = first.map_or(Vector::default(), |shape| shape.points[0]);
     // A pad has no bar; only its notch gives it a direction.
-    let cuts = body.prisms.iter().flat_map(|prism| &prism.cut);
+    let cuts = body.prisms.iter().flat_map(|prism| &prism.cut_shapes);
     let bar = shapes()
         .chain(cuts)
         .find_map(|shape| match shape.points[..] {
@@ -228,8 +228,8 @@ fn frame(body: &Body) -> Placement {
             _ => None,
         });
     Placement {
-        at,
-        turn: bar.map_or(Placement::CHASSIS.turn, |bar| bar * (1.0 / bar.length())),
+        origin: at,
+        x_axis: bar.map_or(Placement::CHASSIS.x_axis, |bar| bar * (1.0 / bar.length())),
     }
 }
 
@@ -246,7 +246,9 @@ fn are_equal(a: &[Prism], b: &[Prism]) -> bool {
     a.len() == b.len()
         && zip(a, b).all(|(a, b)| {
             let heights = near(a.z[0], b.z[0]) && near(a.z[1], b.z[1]);
-            heights && shapes(&a.add, &b.add) && shapes(&a.cut, &b.cut)
+            heights
+                && shapes(&a.filled_shapes, &b.filled_shapes)
+                && shapes(&a.cut_shapes, &b.cut_shapes)
         })
 }
 

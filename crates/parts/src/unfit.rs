@@ -8,13 +8,13 @@ use crate::bodies::pads;
 use crate::bodies::sliders::{SliderLengths, slider_range};
 use crate::layers::body::{Body, Kind, Prism};
 use crate::layers::shape::Shape;
-use crate::order::reach::Blocked;
+use crate::order::reach::BlockedScrew;
 use crate::order::steps::steps;
 use crate::proof::Clash;
 
 /// A reason why a robot cannot be built, as the message that the user sees.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Unfit {
+pub enum BuildProblem {
     /// Two parts that collide or come too near each other.
     #[error("{0}; other links, or other measures under [parts] in robot.toml, may keep them apart")]
     Clash(#[from] Clash),
@@ -38,7 +38,7 @@ pub enum Unfit {
     #[error(
         "{0}, at every pose; other links, or other measures under [parts] in robot.toml, may make room"
     )]
-    Blocked(#[from] Blocked),
+    Blocked(#[from] BlockedScrew),
     /// A part whose layers do not form a single closed body.
     #[error(
         "the layers of {0} do not make one body; a measure under [parts] in robot.toml is too small or too large for it"
@@ -60,7 +60,7 @@ pub struct Meeting {
     pub pose: Option<[f64; 4]>,
 }
 
-impl Unfit {
+impl BuildProblem {
     /// The parts that collide or may collide; `None` if the robot cannot be built for another reason.
     #[must_use]
     pub fn meeting(&self) -> Option<Meeting> {
@@ -91,7 +91,7 @@ impl Unfit {
 /// Least gap between servos and floor, mm.
 const OFF_FLOOR: f64 = 8.0;
 /// The shortest sleeve that guides a rod, mm.
-const SLEEVE: f64 = 25.0;
+const MIN_SLEEVE_LENGTH: f64 = 25.0;
 
 const NUT: &str = "the nut of a leg's anchor does not fit into its crank with a screw from the shop; \
                    raise parts.thickness or the servo's horn";
@@ -103,7 +103,7 @@ impl Assembly {
     /// # Errors
     /// Returns the first dimension that does not fit, else the two parts that overlap most, else a screw that
     /// cannot be reached.
-    pub fn check_fit(&self) -> Result<(), Unfit> {
+    pub fn check_fit(&self) -> Result<(), BuildProblem> {
         self.check_measures()?;
         self.prove(|_, _| ()).judge()?;
         self.access_poses(&steps(self.robot().drive().strut().is_some()))?;
@@ -114,10 +114,10 @@ impl Assembly {
     ///
     /// # Errors
     /// Returns the first dimension that does not fit.
-    pub fn check_measures(&self) -> Result<(), Unfit> {
+    pub fn check_measures(&self) -> Result<(), BuildProblem> {
         let (robot, stack) = (self.robot(), self.stack());
         let (parts, drive) = (robot.parts(), robot.drive());
-        let refuse = |message: String| Err(Unfit::Measure(message));
+        let refuse = |message: String| Err(BuildProblem::Measure(message));
         let min = parts.screw.head + 2.0 * parts.fit + 1.2;
         if parts.bar < min {
             return refuse(format!(
@@ -159,7 +159,7 @@ impl Assembly {
                 parts.height
             ));
         }
-        if drive.strut().is_some() && robot.hung() <= parts.spring.length {
+        if drive.strut().is_some() && robot.mounted_spring_length() <= parts.spring.length {
             return refuse(format!(
                 "leg strut {} is {:.1} mm from screw to screw, but its spring is {:.1} mm long inside its hooks \
                  without load and must be pulled; parts.pivot sets the one, parts.spring.length the other; \
@@ -171,7 +171,7 @@ impl Assembly {
         }
         for side in lizard_kinematics::Side::ALL {
             let range = slider_range(robot, side);
-            if SliderLengths::new(side, range).sleeve < SLEEVE {
+            if SliderLengths::new(side, range).sleeve < MIN_SLEEVE_LENGTH {
                 let [shortest, longest] = range;
                 return refuse(format!(
                     "the {side} slider is {shortest:.1} mm at its shortest and {longest:.1} mm at its longest; a rod \
@@ -189,14 +189,14 @@ impl Assembly {
                 ));
             }
             if body.prisms.iter().any(|prism| prism.z[1] <= prism.z[0]) {
-                return Err(Unfit::Surface(body.name.clone()));
+                return Err(BuildProblem::Surface(body.name.clone()));
             }
         }
         self.check_overlaps()
     }
 
     /// Checks that no two bodies that move together overlap.
-    fn check_overlaps(&self) -> Result<(), Unfit> {
+    fn check_overlaps(&self) -> Result<(), BuildProblem> {
         /// Overlap allowed for press fits, mm.
         const TOUCH: f64 = 0.02;
         let bodies = self.bodies();
@@ -204,7 +204,7 @@ impl Assembly {
             for b in bodies[i + 1..].iter().filter(|b| b.mount == a.mount) {
                 let air = clearance(self.outside_threads(a), self.outside_threads(b));
                 if air < -TOUCH {
-                    return Err(Unfit::Together {
+                    return Err(BuildProblem::Together {
                         first: a.name.clone(),
                         second: b.name.clone(),
                         mm: -air,
@@ -220,7 +220,7 @@ impl Assembly {
         let nut = body.name.replacen("screw", "nut", 1);
         match (body.kind, &body.prisms[..]) {
             (Kind::Screw(_) | Kind::HornScrew(_), [low, high]) if self.body(&nut).is_none() => {
-                let head_above = high.add[0].width() > low.add[0].width();
+                let head_above = high.filled_shapes[0].width() > low.filled_shapes[0].width();
                 &body.prisms[usize::from(head_above)..][..1]
             }
             (_, all) => all,
@@ -240,10 +240,10 @@ fn clearance(a: &[Prism], b: &[Prism]) -> f64 {
     let mut smallest = f64::INFINITY;
     let layers = a.iter().flat_map(|p| b.iter().map(move |q| (p, q)));
     for (p, q) in layers.filter(|(p, q)| p.z[0] <= q.z[1] - 1e-6 && q.z[0] <= p.z[1] - 1e-6) {
-        for first in &p.add {
-            for second in &q.add {
-                let air = within(first, &q.cut, first.distance(second));
-                smallest = smallest.min(within(second, &p.cut, air));
+        for first in &p.filled_shapes {
+            for second in &q.filled_shapes {
+                let air = within(first, &q.cut_shapes, first.distance(second));
+                smallest = smallest.min(within(second, &p.cut_shapes, air));
             }
         }
     }

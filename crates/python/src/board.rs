@@ -3,21 +3,21 @@
 use std::sync::{Mutex, PoisonError};
 
 use lizard_core::memory::restart::Cause;
-use lizard_core::virtual_board::Running;
+use lizard_core::virtual_board::RunningRobot;
 use pyo3::prelude::*;
 
 use crate::robot::Robot;
 
 /// The firmware's core with a robot, in frames of 20 ms.
 #[pyclass(frozen)]
-pub struct Board(Mutex<Running>);
+pub struct Board(Mutex<RunningRobot>);
 
 #[pymethods]
 impl Board {
     /// The robot at power-on.
     #[new]
     fn new(robot: &Robot) -> Self {
-        Self(Mutex::new(Running::power_on(*robot.0.firmware())))
+        Self(Mutex::new(RunningRobot::power_on(*robot.0.firmware())))
     }
 
     /// Runs a frame after these bytes of the serial line, and returns the text of the robot.

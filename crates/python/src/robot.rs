@@ -183,7 +183,11 @@ impl Robot {
         } = py.detach(|| {
             let ideal = self.0.predict(gait);
             match with_servos {
-                true => ideal.keep_known(gait.driven(self.0.ground(), &self.0.motors(), 1.0)),
+                true => ideal.keep_known(gait.simulate_driven_cycle(
+                    self.0.ground(),
+                    &self.0.motors(),
+                    1.0,
+                )),
                 false => ideal,
             }
         });
@@ -211,7 +215,7 @@ impl Robot {
             assembly.check_measures().map_err(refused)?;
             let neutral = self.0.lizard().solve(&self.0.neutral()).map_err(refused)?;
             let scene = Scene {
-                shapes,
+                has_shapes: shapes,
                 ..Scene::of(&assembly)
             };
             mjcf(&assembly, &neutral, &scene).map_err(refused)

@@ -100,11 +100,11 @@ impl ServoSettings {
     fn read(section: &Section) -> Checked<Self> {
         let number = |key| {
             let value = section.number(key, -360.0, 360.0, "deg")?;
-            has_two_decimals(section, key, value)
+            require_two_decimals(section, key, value)
         };
         let limit: [f64; 2] = section.numbers("limit", -360.0, 360.0, "deg")?;
         for end in limit {
-            has_two_decimals(section, "limit", end)?;
+            require_two_decimals(section, "limit", end)?;
         }
         let dir = match section.text("dir")? {
             "+" => '+',
@@ -126,7 +126,7 @@ impl ServoSettings {
 impl Calibration {
     /// Reads the answer to `cal`; skips other lines. `None` if a setting is missing or cannot be read.
     #[must_use]
-    pub fn of_lines(lines: &[String]) -> Option<Self> {
+    pub fn from_lines(lines: &[String]) -> Option<Self> {
         let after = |word: &str| {
             let mut found = lines.iter().filter_map(|line| {
                 let rest = line.strip_prefix("# ")?.strip_prefix(word)?;
@@ -253,7 +253,7 @@ impl Calibration {
 pub struct Transfer {
     all: Vec<String>,
     /// The lines of the current round that have not been sent yet.
-    left: VecDeque<String>,
+    unsent_lines: VecDeque<String>,
     last: String,
     refused: Vec<String>,
     /// Number of lines of the current round.
@@ -267,7 +267,7 @@ impl Transfer {
     pub fn new(calibration: &Calibration) -> Self {
         let all = calibration.lines();
         Self {
-            left: all.clone().into(),
+            unsent_lines: all.clone().into(),
             last: String::new(),
             refused: Vec::new(),
             round: all.len(),
@@ -278,18 +278,18 @@ impl Transfer {
 
     /// The next line to send; `None` if no line is left, or if no line of a round after `factory` was accepted.
     pub fn next_line(&mut self) -> Option<String> {
-        if self.left.is_empty() && !self.refused.is_empty() {
+        if self.unsent_lines.is_empty() && !self.refused.is_empty() {
             if self.refused.len() < self.round {
-                self.left = std::mem::take(&mut self.refused).into();
+                self.unsent_lines = std::mem::take(&mut self.refused).into();
             } else if !self.is_from_factory {
                 self.is_from_factory = true;
                 self.refused.clear();
-                self.left = self.all.clone().into();
-                self.left.push_front("factory".to_owned());
+                self.unsent_lines = self.all.clone().into();
+                self.unsent_lines.push_front("factory".to_owned());
             }
-            self.round = self.left.len();
+            self.round = self.unsent_lines.len();
         }
-        self.last = self.left.pop_front()?;
+        self.last = self.unsent_lines.pop_front()?;
         Some(self.last.clone())
     }
 
@@ -302,7 +302,7 @@ impl Transfer {
     /// True if all lines are sent and none of them is still refused.
     #[must_use]
     pub fn is_done(&self) -> bool {
-        self.left.is_empty() && self.refused.is_empty()
+        self.unsent_lines.is_empty() && self.refused.is_empty()
     }
 }
 
@@ -313,7 +313,7 @@ fn is_name(text: &str) -> bool {
 }
 
 /// Returns a number that has at most two decimals, and refuses any other number: the console accepts no more.
-fn has_two_decimals(section: &Section, key: &str, value: f64) -> Checked<f64> {
+fn require_two_decimals(section: &Section, key: &str, value: f64) -> Checked<f64> {
     match (value * 100.0 - (value * 100.0).round()).abs() < 1e-6 {
         true => Ok(value),
         false => Err(section.fault(

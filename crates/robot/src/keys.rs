@@ -6,7 +6,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
-use crate::file::{self, Error, KeyRead, READS, Section, short};
+use crate::file::{self, Error, KeyRead, READS, Section, format_number};
 use crate::gaits::{define, routine};
 use crate::measures::Measures;
 use crate::robot::KEYS;
@@ -83,9 +83,9 @@ fn keys() -> BTreeMap<String, Words> {
         } = read
         {
             let unit = unit.trim_start_matches('(').trim_end_matches(')');
-            let [min, max] = [*min, *max].map(short);
+            let [min, max] = [*min, *max].map(format_number);
             words.values = Some(format!("{min} to {max}, {unit}"));
-            words.default = default.map(short).or(words.default.take());
+            words.default = default.map(format_number).or(words.default.take());
         }
     }
     let is_table = |read: &&(String, KeyRead)| matches!(read.1, KeyRead::Table);
@@ -183,9 +183,9 @@ fn read(text: &str) -> Result<(), Error> {
     file::parse(text, |table| {
         let root = Section::root(table, &KEYS)?;
         let body = Measures::read(&root)?;
-        let gaits = define::gaits(&root, &body)?;
+        let gaits = define::read_gaits(&root, &body)?;
         let names: Vec<&str> = gaits.iter().map(|gait| gait.name.as_str()).collect();
-        routine::routines(&root, &names, &body.inputs).map(|_| ())
+        routine::read_routines(&root, &names, &body.inputs).map(|_| ())
     })
 }
 

@@ -38,12 +38,12 @@ mod units;
 
 pub use calibration::{Calibration, ServoSettings, Transfer};
 pub use checks::{
-    Audit, CheckedGait, Effort, HIGH_LINE_SHARE, LeastMargin, Peak, TableError, Walked,
+    Audit, CheckedGait, Effort, HIGH_LINE_SHARE, LeastMargin, Peak, SimulatedCycle, TableError,
 };
 pub use file::{Error, MAX_FILE_BYTES, edit, explain_mistake};
 pub use gaits::{Bars, Harmonic, Path, PathLeg, Routine, Stride, Waveform};
 pub use lizard_contact::{
-    Body, DEFAULT_FRICTION, Drive, Feet, GRAVITY, Ground, Joints, Kind, Motor, Motors, Place,
+    Body, DEFAULT_FRICTION, Drive, DriveKind, Feet, GRAVITY, Ground, Joints, Motor, Motors, Place,
     Prediction, SLOT, Slip, Stance, Strut, Travel, Walker,
 };
 pub use measures::servo;

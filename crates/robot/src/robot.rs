@@ -100,22 +100,22 @@ impl Robot {
         let efforts: Vec<Effort> = robot.gaits().iter().map(effort).collect();
         let volts = robot.servo_type().volts;
         let lines = efforts.iter().map(|effort| effort.line_share(1.0, 1.0));
-        rail.slow_down(lines.fold(0.0, f64::max), HIGH_LINE_SHARE, volts);
+        rail.set_slow_threshold(lines.fold(0.0, f64::max), HIGH_LINE_SHARE, volts);
         // The torque-speed line shrinks in proportion to the supply, so a share of the line at one supply is the
         // whole line at that share of the supply.
         let [_, stop, _] = rail.thresholds;
         let paces = efforts
             .iter()
-            .map(|effort| effort.pace(HIGH_LINE_SHARE * stop / volts));
+            .map(|effort| effort.max_pace(HIGH_LINE_SHARE * stop / volts));
         measures.supplies.limit_pace(paces.fold(1.0, f64::min));
         Self::with_measures(name, measures, &root)
     }
 
     /// Reads and checks the gaits of a robot with these measures, and computes its tables.
     fn with_measures(name: &str, measures: Measures, root: &Section) -> Checked<Self> {
-        let gaits = define::gaits(root, &measures)?;
+        let gaits = define::read_gaits(root, &measures)?;
         let names: Vec<&str> = gaits.iter().map(|gait| gait.name.as_str()).collect();
-        let routines = routine::routines(root, &names, &measures.inputs)?;
+        let routines = routine::read_routines(root, &names, &measures.inputs)?;
         let tables = Tables::new(&gaits)?;
         let content = numbers::content(name, &measures, &tables, &routines);
         let tables = Arc::new(tables);
@@ -275,11 +275,11 @@ impl Robot {
 
     /// A slotted strut of this robot's size with this coil spring.
     pub fn strut_of(&self, coil: &Coil) -> Strut {
-        measures::of_coil(self.legs(), self.measures.neutral(), self.parts(), coil)
+        measures::strut_with_coil(self.legs(), self.measures.neutral(), self.parts(), coil)
     }
 
     /// The length, inside its hooks, of a spring mounted in a strut, mm.
-    pub fn hung(&self) -> f64 {
+    pub fn mounted_spring_length(&self) -> f64 {
         measures::mounted_spring_length(self.legs(), self.parts())
     }
 
@@ -380,7 +380,7 @@ impl Robot {
             return None;
         }
         let solution = self.lizard().solve(&angles.into()).ok()?;
-        self.limits().allow(&solution).then_some(solution)
+        self.limits().is_safe(&solution).then_some(solution)
     }
 
     /// Converts servo angles (deg, chassis frame) to the legs' sweeps (deg, positive if the foot is forward), both

@@ -53,7 +53,7 @@ impl Uno {
 
     /// True while the supply holds the chip in reset.
     #[must_use]
-    pub fn held_in_reset(&self) -> bool {
+    pub fn is_held_in_reset(&self) -> bool {
         // SAFETY: `raw` is valid, see `Uno`; the shim reads a flag.
         unsafe { ffi::uno_held_in_reset(self.raw) }
     }

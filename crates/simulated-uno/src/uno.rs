@@ -245,7 +245,7 @@ impl Uno {
 
     /// The number of resets by the watchdog so far. [`Uno::reset_events`] lists all resets.
     #[must_use]
-    pub fn resets(&self) -> u64 {
+    pub fn watchdog_resets(&self) -> u64 {
         // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
         unsafe { ffi::uno_resets(self.raw) }
     }

@@ -2,7 +2,7 @@
 
 use fastrand::Rng;
 use lizard_robot::{
-    Body, CheckedGait, Drive, Feet, Ground, Kind, Robot, Stance, Strut, Travel, Walker,
+    Body, CheckedGait, Drive, DriveKind, Feet, Ground, Robot, Stance, Strut, Travel, Walker,
 };
 use lizard_twin::{FRAME, ServoModel};
 
@@ -64,8 +64,8 @@ impl Variation {
             friction: ground.friction * within(FRICTION),
             drive: Drive {
                 kind: match ground.drive.kind {
-                    Kind::Rigid => Kind::Rigid,
-                    Kind::Strut(strut) => Kind::Strut(Strut {
+                    DriveKind::Rigid => DriveKind::Rigid,
+                    DriveKind::Strut(strut) => DriveKind::Strut(Strut {
                         force: strut.force * within(SPRING),
                         rate: strut.rate * within(SPRING),
                         ..strut
@@ -136,7 +136,7 @@ impl Variation {
         let first: Vec<[f64; 4]> = gait.frames().map(|(_, phase)| next(phase)).collect();
         let [start, end] = [first.first(), first.last()].map(|at| at.copied().unwrap_or_default());
         // Rigid legs keep nothing from the first cycle, so only the servos need to run through it.
-        let sprung = self.ground.drive.lags();
+        let sprung = self.ground.drive.can_lag();
         let from = if sprung { start } else { end };
         let mut walker = Walker::with_unevenness(self.ground, from, self.pads, self.ratio);
         if sprung {

@@ -97,7 +97,7 @@ impl Twin {
                 .feet
                 .positions(self.walker.legs())
                 .map(|foot| place.on_floor(foot)),
-            slip: slip.feet,
+            slip: slip.slid_distances,
             loads: slip.loads.map(|share| share * load),
             margins: solved.map(|solved| solved.margins),
             strokes: solved.map(|solved| [solved.left.s, solved.right.s]),

@@ -1,6 +1,6 @@
 //! Tests of the twin: the frames of a gait, simulated one by one, move the robot as predicted for the gait.
 
-use lizard_robot::{CheckedGait, Drive, Ground, Kind, Place, Robot};
+use lizard_robot::{CheckedGait, Drive, DriveKind, Ground, Place, Robot};
 use lizard_twin::{ServoModel, Tally, Twin, Unloaded};
 
 fn paper() -> Robot {
@@ -38,7 +38,7 @@ fn ideal_servos_go_where_the_gait_is_predicted_to_go() {
     let robot = paper();
     let springs = Ground {
         drive: Drive {
-            kind: Kind::Strut(robot.strut_with(0.5, 0.4)),
+            kind: DriveKind::Strut(robot.strut_with(0.5, 0.4)),
             play: 0.0,
         },
         ..*robot.ground()

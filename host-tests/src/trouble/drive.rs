@@ -115,7 +115,7 @@ impl<'a> Drive<'a> {
             }
             _ => {}
         }
-        self.session.overdue(moment);
+        self.session.end_overdue_question(moment);
         self.session.take_events();
         while let Some(line) = self.session.next_line(moment) {
             self.radio.write(format!("{line}\n").as_bytes(), now);
@@ -125,7 +125,7 @@ impl<'a> Drive<'a> {
 
     /// Returns a random line for the person to send.
     fn line(&mut self) -> String {
-        let gaits = tour::moving(self.robot);
+        let gaits = tour::moving_gaits(self.robot);
         let gait = self.random.choice(&gaits).unwrap_or(&"stand");
         let gait = gait.replace('-', " ");
         match self.random.u8(..24) {

@@ -167,14 +167,14 @@ impl Record {
                     "err" => Some(false),
                     _ => None,
                 });
-                (received, done.or_else(|| self.is_confirmed(received)))
+                (received, done.or_else(|| self.derive_outcome(received)))
             })
     }
 
     /// Derives the outcome of a line from the lines that the board prints in the next 300 ms, for a line whose answer
     /// was not waited for. Returns `Some(true)` if the board carried out the line, `Some(false)` if it refused the
     /// line, `None` if the outcome is unknown.
-    fn is_confirmed(&self, received: &Received) -> Option<bool> {
+    fn derive_outcome(&self, received: &Received) -> Option<bool> {
         let (from, to) = (received.cycle, received.cycle + 300 * MS);
         // A reset may have cut off the beginning of the line.
         let is_ok = |text: &str| {

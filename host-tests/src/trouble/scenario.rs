@@ -121,7 +121,7 @@ impl<'a> Script<'a> {
     }
 
     fn gait(&mut self) -> String {
-        let gaits = tour::moving(self.robot);
+        let gaits = tour::moving_gaits(self.robot);
         let name = self.rng.choice(&gaits);
         name.map_or("stand".into(), |name| name.replace('-', " "))
     }

@@ -2,15 +2,15 @@
 //! carries them, for 15 seconds each (`LIZARD_FUZZ` times as long if that is set).
 
 use fastrand::Rng;
-use lizard_core::memory::copies::{self, Outcome};
+use lizard_core::memory::copies::{self, SavedState};
 use lizard_core::memory::settings::Settings;
 use lizard_core::virtual_board::Eeprom;
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::Fidelity;
 
-use crate::kept::pulses;
+use crate::kept::recorded_pulses;
 use crate::rate::ask_until_answered;
-use crate::{awake, end_flood, lines};
+use crate::{boot_standing, end_flood, lines};
 
 /// Bytes that the serial line carries in a second.
 const PER_SECOND: usize = 11_520;
@@ -20,7 +20,7 @@ const SECONDS: u64 = 15;
 
 /// Sends bytes for the duration of a flood, and checks the pulses every second.
 fn send_and_check(mut bytes: impl FnMut(&mut Rng) -> Vec<u8>) -> FirmwareBench {
-    let mut bench = awake(Fidelity::DataSheet);
+    let mut bench = boot_standing(Fidelity::DataSheet);
     let mut rng = lizard_host_tests::rng(77);
     bench.uno.take_edges();
     for second in 0..lizard_host_tests::scaled(SECONDS) {
@@ -30,7 +30,7 @@ fn send_and_check(mut bytes: impl FnMut(&mut Rng) -> Vec<u8>) -> FirmwareBench {
         }
         bench.uno.send(&sent);
         bench.run_ms(1000);
-        for (pulses, servo) in pulses(&bench).iter().zip(robot().servos()) {
+        for (pulses, servo) in recorded_pulses(&bench).iter().zip(robot().servos()) {
             let cycles = |us: f64| (us * 16.0).round() as u64;
             let within = cycles(servo.min_us) - 2..=cycles(servo.max_us) + 2;
             for pulse in pulses {
@@ -64,7 +64,7 @@ fn assert_unharmed(mut bench: FirmwareBench) {
     let mut settings = Settings::of(firmware);
     let outcome = copies::load(firmware, &Eeprom::with(contents), &mut settings);
     assert!(
-        matches!(outcome, Outcome::Latest | Outcome::Blank),
+        matches!(outcome, SavedState::Latest | SavedState::Blank),
         "{outcome:?}"
     );
     assert!(contents[192..].iter().all(|byte| *byte == 0xff));
@@ -86,7 +86,7 @@ fn random_bytes_at_full_rate_do_no_harm_to_the_running_image() {
 #[test]
 fn lines_that_are_nearly_right_at_full_rate_do_no_harm_to_the_running_image() {
     let bench = send_and_check(|rng| {
-        let mut line = lines::mutated(rng);
+        let mut line = lines::nearly_valid_line(rng);
         line.push(b'\n');
         line
     });

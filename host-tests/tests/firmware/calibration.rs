@@ -5,14 +5,16 @@ use lizard_host_tests::robot;
 use simulated_uno::{Fidelity, PowerCut, State};
 
 use crate::kept::{
-    MS, assert_no_leap, assert_no_leap_at, calibration, power_cycle, pulses, pulses_in, slew_limit,
-    widths_now,
+    CYCLES_PER_MS, assert_no_leap, assert_no_leap_at, measure_widths, power_cycle,
+    read_calibration, recorded_pulses, run_for_pulses, slew_limit,
 };
-use crate::walk::{SLOT, Walk};
-use crate::{Status, awake, first_moving_gait, in_both, neutral_widths, pose_at};
+use crate::walk::{ReferenceRun, SLOT_CYCLES};
+use crate::{
+    Status, boot_standing, first_moving_gait, neutral_widths, pose_command, run_in_both_simulations,
+};
 
 /// Returns A1's pulse width at a sweep (deg) with a trim (deg) and a gain (us per degree), cycles.
-fn width(trim: f64, gain: f64, sweep: f64) -> u64 {
+fn calibrated_width(trim: f64, gain: f64, sweep: f64) -> u64 {
     let servo = &robot().servos()[0];
     ((servo.neutral_us + gain * (trim + sweep)) * 16.0).round() as u64
 }
@@ -29,8 +31,8 @@ fn assert_near(width: u64, expected: u64, what: &str) {
 
 #[test]
 fn a_trim_turns_its_servo_alone_and_no_faster_than_the_slew_limit() {
-    in_both(|fidelity| {
-        let mut bench = awake(fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut bench = boot_standing(fidelity);
         let trim = [20, 10, 5, 2]
             .into_iter()
             .find(|trim| bench.say(&format!("trim 1 {trim}")) == format!("ok trim 1 {trim}"))
@@ -40,7 +42,7 @@ fn a_trim_turns_its_servo_alone_and_no_faster_than_the_slew_limit() {
         bench.uno.take_edges();
         bench.say(&format!("trim 1 {trim}"));
         bench.run_ms(1000);
-        let pulses = pulses(&bench);
+        let pulses = recorded_pulses(&bench);
         assert_no_leap(&pulses);
         assert!(
             pulses[0]
@@ -50,7 +52,7 @@ fn a_trim_turns_its_servo_alone_and_no_faster_than_the_slew_limit() {
             "as fast as it may"
         );
         let last = pulses[0].last().expect("a pulse").width;
-        assert_near(last, width(trim.into(), gain(), 0.0), "trimmed");
+        assert_near(last, calibrated_width(trim.into(), gain(), 0.0), "trimmed");
         for (pulses, neutral) in pulses.iter().zip(neutral_widths()).skip(1) {
             assert!(pulses.iter().all(|pulse| pulse.width == neutral));
         }
@@ -61,20 +63,24 @@ fn a_trim_turns_its_servo_alone_and_no_faster_than_the_slew_limit() {
 
 #[test]
 fn a_scale_and_a_sense_act_at_once_and_are_those_of_the_pulses() {
-    in_both(|fidelity| {
-        let mut bench = awake(fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut bench = boot_standing(fidelity);
         let size = gain().abs();
-        bench.say(&pose_at([5.0, 0.0, 0.0, 0.0]));
+        bench.say(&pose_command([5.0, 0.0, 0.0, 0.0]));
         bench.run_ms(1000);
-        assert_near(widths_now(&mut bench)[0], width(0.0, gain(), 5.0), "before");
+        assert_near(
+            measure_widths(&mut bench)[0],
+            calibrated_width(0.0, gain(), 5.0),
+            "before",
+        );
         let scale = size + 1.25;
         assert_eq!(
             bench.say(&format!("scale 1 {scale:.2}")),
             format!("ok scale 1 {scale:.2}")
         );
         bench.run_ms(500);
-        let turned = width(0.0, scale.copysign(gain()), 5.0);
-        assert_near(widths_now(&mut bench)[0], turned, "scaled");
+        let turned = calibrated_width(0.0, scale.copysign(gain()), 5.0);
+        assert_near(measure_widths(&mut bench)[0], turned, "scaled");
         let other = if gain() > 0.0 { '-' } else { '+' };
         assert_eq!(
             bench.say(&format!("dir 1 {other}")),
@@ -84,48 +90,48 @@ fn a_scale_and_a_sense_act_at_once_and_are_those_of_the_pulses() {
         bench.run_ms(500);
         let mut gains = robot().servos().each_ref().map(|servo| servo.us_per_degree);
         gains[0] = scale;
-        assert_no_leap_at(&pulses(&bench), gains);
-        let turned = width(0.0, -scale.copysign(gain()), 5.0);
-        assert_near(widths_now(&mut bench)[0], turned, "the other way");
+        assert_no_leap_at(&recorded_pulses(&bench), gains);
+        let turned = calibrated_width(0.0, -scale.copysign(gain()), 5.0);
+        assert_near(measure_widths(&mut bench)[0], turned, "the other way");
     });
 }
 
 #[test]
 fn a_limit_ends_the_travel_of_poses_and_may_not_cut_off_a_gait() {
-    let mut bench = awake(Fidelity::DataSheet);
+    let mut bench = boot_standing(Fidelity::DataSheet);
     let neutral = robot().servos()[0].neutral;
-    let before = calibration(&mut bench);
+    let before = read_calibration(&mut bench);
     let too_narrow = format!("limit 1 {:.2} {:.2}", neutral - 0.5, neutral + 0.5);
     if robot().gaits().iter().any(|gait| gait.moves()) {
         let refused = bench.say(&too_narrow);
         assert!(refused.starts_with("err 3 "), "{refused}");
-        assert_eq!(calibration(&mut bench), before, "nothing has changed");
+        assert_eq!(read_calibration(&mut bench), before, "nothing has changed");
     }
     let narrow = format!("limit 1 {:.2} {:.2}", neutral - 40.0, neutral + 40.0);
     assert_eq!(bench.say(&narrow), format!("ok {narrow}"));
-    let beyond = bench.say(&pose_at([41.0, 0.0, 0.0, 0.0]));
+    let beyond = bench.say(&pose_command([41.0, 0.0, 0.0, 0.0]));
     assert!(beyond.starts_with("err 3 "), "{beyond}");
 }
 
 #[test]
 fn saved_settings_shape_the_pulses_after_the_next_power_on() {
-    in_both(|fidelity| {
-        let mut bench = awake(fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut bench = boot_standing(fidelity);
         bench.say("trim 1 1.5");
         bench.say("trim 3 -2");
         bench.say("deadman 2500");
-        let set = calibration(&mut bench);
+        let set = read_calibration(&mut bench);
         assert_eq!(bench.say("save"), "ok save");
         bench.run_ms(500);
-        let widths = widths_now(&mut bench);
-        assert_near(widths[0], width(1.5, gain(), 0.0), "trimmed");
+        let widths = measure_widths(&mut bench);
+        assert_near(widths[0], calibrated_width(1.5, gain(), 0.0), "trimmed");
         power_cycle(&mut bench);
         bench.run_ms(700);
         // From the first pulse on, the widths are those of the saved settings.
-        for (pulses, width) in pulses(&bench).iter().zip(widths) {
+        for (pulses, width) in recorded_pulses(&bench).iter().zip(widths) {
             assert!(pulses.len() > 10 && pulses.iter().all(|pulse| pulse.width == width));
         }
-        assert_eq!(calibration(&mut bench), set);
+        assert_eq!(read_calibration(&mut bench), set);
         let notes = bench.lines();
         assert!(
             !notes[notes.len() - 12..]
@@ -138,26 +144,30 @@ fn saved_settings_shape_the_pulses_after_the_next_power_on() {
 
 #[test]
 fn unsaved_settings_are_lost_and_load_and_factory_discard_them() {
-    let mut bench = awake(Fidelity::DataSheet);
-    let factory = calibration(&mut bench);
+    let mut bench = boot_standing(Fidelity::DataSheet);
+    let factory = read_calibration(&mut bench);
     let refused = bench.say("load");
     assert!(refused.starts_with("err 9 "), "{refused}");
     bench.say("trim 1 1");
-    let saved = calibration(&mut bench);
+    let saved = read_calibration(&mut bench);
     assert_eq!(bench.say("save"), "ok save");
     bench.say("trim 1 -1");
-    assert_ne!(calibration(&mut bench), saved);
+    assert_ne!(read_calibration(&mut bench), saved);
     assert_eq!(bench.say("load"), "ok load");
-    assert_eq!(calibration(&mut bench), saved);
+    assert_eq!(read_calibration(&mut bench), saved);
     bench.run_ms(500);
-    assert_near(widths_now(&mut bench)[0], width(1.0, gain(), 0.0), "loaded");
+    assert_near(
+        measure_widths(&mut bench)[0],
+        calibrated_width(1.0, gain(), 0.0),
+        "loaded",
+    );
     assert_eq!(bench.say("factory"), "ok factory");
-    assert_eq!(calibration(&mut bench), factory);
+    assert_eq!(read_calibration(&mut bench), factory);
     bench.run_ms(500);
-    assert_eq!(widths_now(&mut bench), neutral_widths());
+    assert_eq!(measure_widths(&mut bench), neutral_widths());
     power_cycle(&mut bench);
     assert_eq!(
-        calibration(&mut bench),
+        read_calibration(&mut bench),
         saved,
         "factory alone saves nothing"
     );
@@ -165,8 +175,8 @@ fn unsaved_settings_are_lost_and_load_and_factory_discard_them() {
 
 #[test]
 fn a_save_writes_only_bytes_that_differ_one_at_a_time_and_loses_no_input() {
-    in_both(|fidelity| {
-        let mut walk = Walk::begin(fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut walk = ReferenceRun::start_walking(fidelity);
         for n in 1..=6 {
             walk.bench.say(&format!("deadman {}", 50_000 + 257 * n));
             walk.bench.send("save");
@@ -186,9 +196,12 @@ fn a_save_writes_only_bytes_that_differ_one_at_a_time_and_loses_no_input() {
             assert_ne!(operation.old, operation.new, "only bytes that differ");
         }
         for pair in operations.windows(2) {
-            assert!(pair[1].cycle - pair[0].cycle >= 3 * MS, "one at a time");
+            assert!(
+                pair[1].cycle - pair[0].cycle >= 3 * CYCLES_PER_MS,
+                "one at a time"
+            );
         }
-        assert_eq!(walk.late(), 0);
+        assert_eq!(walk.late_edge_count(), 0);
         let status = Status::of(&mut walk.bench);
         assert_eq!(status.number("rx_lost"), 0.0);
     });
@@ -196,24 +209,24 @@ fn a_save_writes_only_bytes_that_differ_one_at_a_time_and_loses_no_input() {
 
 #[test]
 fn every_pulse_of_a_walk_is_exact_while_the_memory_is_written() {
-    in_both(|fidelity| {
-        let mut walk = Walk::begin(fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut walk = ReferenceRun::start_walking(fidelity);
         walk.bench.say("deadman 54321");
         let start = walk.next_frame();
         let written = walk.bench.uno.eeprom_operations().len();
         walk.bench.send("save");
-        // The serial line stays busy: the main loop reads none of it until it has saved.
+        // The serial line stays busy, since the main loop reads no byte until it has saved.
         for _ in 0..14 {
             walk.bench.uno.send(b" \t ");
             walk.run_to(walk.bench.uno.cycle() + FRAME);
         }
-        walk.run_to(start + 40 * FRAME - SLOT / 2);
+        walk.run_to(start + 40 * FRAME - SLOT_CYCLES / 2);
         let frames = walk.frames_since(start);
         assert!(frames.len() >= 40);
         for (frame, asked) in frames {
-            assert_eq!(frame.all(), Some(asked), "{frame:?}");
+            assert_eq!(frame.all_widths(), Some(asked), "{frame:?}");
         }
-        assert_eq!(walk.late(), 0);
+        assert_eq!(walk.late_edge_count(), 0);
         if walk.is_by_the_data_sheet() {
             assert!(walk.bench.uno.eeprom_operations().len() > written + 40);
         }
@@ -222,8 +235,8 @@ fn every_pulse_of_a_walk_is_exact_while_the_memory_is_written() {
 
 #[test]
 fn boot_begins_its_gait_three_seconds_after_power_on_unless_a_byte_comes() {
-    in_both(|fidelity| {
-        let mut bench = awake(fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut bench = boot_standing(fidelity);
         let gait = first_moving_gait();
         assert_eq!(
             bench.say(&format!("boot {gait}")),
@@ -231,7 +244,7 @@ fn boot_begins_its_gait_three_seconds_after_power_on_unless_a_byte_comes() {
         );
         assert_eq!(bench.say("save"), "ok save");
         power_cycle(&mut bench);
-        let stood = pulses_in(&mut bench, 2900);
+        let stood = run_for_pulses(&mut bench, 2900);
         let neutral = neutral_widths();
         for (pulses, width) in stood.iter().zip(neutral) {
             assert!(!pulses.is_empty() && pulses.iter().all(|pulse| pulse.width == width));
@@ -243,7 +256,7 @@ fn boot_begins_its_gait_three_seconds_after_power_on_unless_a_byte_comes() {
         power_cycle(&mut bench);
         bench.run_ms(2000);
         bench.uno.send(b" ");
-        for (pulses, width) in pulses_in(&mut bench, 4000).iter().zip(neutral) {
+        for (pulses, width) in run_for_pulses(&mut bench, 4000).iter().zip(neutral) {
             assert!(!pulses.is_empty() && pulses.iter().all(|pulse| pulse.width == width));
         }
     });
@@ -251,32 +264,36 @@ fn boot_begins_its_gait_three_seconds_after_power_on_unless_a_byte_comes() {
 
 /// Moves the robot to a pose near the neutral one and returns its pulse widths.
 fn order_nearby_pose(bench: &mut lizard_host_tests::FirmwareBench) -> [u64; 4] {
-    bench.say(&pose_at([6.0, -6.0, 6.0, -6.0]));
+    bench.say(&pose_command([6.0, -6.0, 6.0, -6.0]));
     bench.run_ms(1000);
-    let widths = widths_now(bench);
+    let widths = measure_widths(bench);
     assert!(widths.iter().zip(neutral_widths()).all(|(a, b)| *a != b));
     widths
 }
 
 #[test]
 fn power_on_wakes_the_servos_one_by_one_where_the_robot_rested() {
-    in_both(|fidelity| {
-        let mut bench = awake(fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut bench = boot_standing(fidelity);
         let rested = order_nearby_pose(&mut bench);
         assert_eq!(bench.say("rest"), "ok rest");
         bench.run_ms(400);
         power_cycle(&mut bench);
         bench.run_ms(1500);
-        let pulses = pulses(&bench);
+        let pulses = recorded_pulses(&bench);
         for servo in 0..4 {
             assert_eq!(pulses[servo][0].width, rested[servo]);
             if servo > 0 {
                 let apart = pulses[servo][0].start - pulses[servo - 1][0].start;
-                assert_eq!(apart, 5 * FRAME + SLOT, "a tenth of a second");
+                assert_eq!(apart, 5 * FRAME + SLOT_CYCLES, "a tenth of a second");
             }
         }
         assert_no_leap(&pulses);
-        assert_eq!(widths_now(&mut bench), neutral_widths(), "then it stands");
+        assert_eq!(
+            measure_widths(&mut bench),
+            neutral_widths(),
+            "then it stands"
+        );
         // The robot has moved since, so its resting pose is no longer valid.
         power_cycle(&mut bench);
         bench.run_ms(300);
@@ -287,7 +304,7 @@ fn power_on_wakes_the_servos_one_by_one_where_the_robot_rested() {
 
 #[test]
 fn a_power_cut_while_a_rest_is_saved_gives_that_pose_or_the_neutral_one() {
-    let mut bench = awake(Fidelity::DataSheet);
+    let mut bench = boot_standing(Fidelity::DataSheet);
     let blank = bench.uno.eeprom();
     let rested = order_nearby_pose(&mut bench);
     let before = bench.uno.eeprom_operations().len();
@@ -313,7 +330,7 @@ fn a_power_cut_while_a_rest_is_saved_gives_that_pose_or_the_neutral_one() {
             assert_eq!(*bench.uno.state(), State::Off);
             power_cycle(&mut bench);
             bench.run_ms(600);
-            let first = pulses(&bench).map(|pulses| pulses[0].width);
+            let first = recorded_pulses(&bench).map(|pulses| pulses[0].width);
             assert!(
                 first == rested || first == neutral_widths(),
                 "byte {operation}, {ones:02x}: {first:?}"

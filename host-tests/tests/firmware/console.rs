@@ -1,13 +1,14 @@
 //! Tests of the console: each line gets one answer, and the pulses agree with that answer.
 
 use fastrand::Rng;
-use lizard_host::sim::analysis::instants;
+use lizard_host::sim::analysis::servo_frames_of;
 use lizard_host_tests::{FirmwareBench, robot};
 use lizard_kinematics::{Check, Limits, Solution};
 use simulated_uno::{FREQUENCY, Fidelity};
 
 use crate::{
-    SECOND, Status, angles, awake, first_moving_gait, gaits, in_both, pose_at, robot_after, widths,
+    FRAMES_PER_SECOND, Status, boot_and_command, boot_standing, first_moving_gait, gait_commands,
+    parse_angles, pose_command, run_in_both_simulations, widths,
 };
 
 /// Largest rounding error of a printed angle, deg: half a step each of the two printed decimals, of the pulse width
@@ -16,7 +17,7 @@ const MAX_PRINT_ERROR: f64 = 0.005 + 0.0032 + 0.0028;
 
 #[test]
 fn half_a_second_after_power_on_there_is_a_banner_and_after_one_an_answer() {
-    in_both(|fidelity| {
+    run_in_both_simulations(|fidelity| {
         let mut bench = FirmwareBench::boot_with(fidelity);
         let hash = robot().firmware().hash();
         let banner = bench.lines()[0].text.clone();
@@ -32,9 +33,9 @@ fn half_a_second_after_power_on_there_is_a_banner_and_after_one_an_answer() {
 
 #[test]
 fn cr_and_lf_and_crlf_each_end_one_line() {
-    in_both(|fidelity| {
+    run_in_both_simulations(|fidelity| {
         for end in ["\r", "\n", "\r\n"] {
-            let mut bench = awake(fidelity);
+            let mut bench = boot_standing(fidelity);
             let before = bench.lines().len();
             let text = format!("{end}{end} \t{end}stand{end}{end}stop{end}status{end}");
             bench.uno.send(text.as_bytes());
@@ -52,10 +53,10 @@ fn cr_and_lf_and_crlf_each_end_one_line() {
 
 #[test]
 fn case_and_blanks_do_not_matter() {
-    let mut bench = awake(Fidelity::DataSheet);
+    let mut bench = boot_standing(Fidelity::DataSheet);
     assert_eq!(bench.say("  StaNd\t "), "ok stand");
     // Tries the gait with the most words in its name.
-    let mut gaits = gaits();
+    let mut gaits = gait_commands();
     gaits.sort_by_key(|gait| gait.split(' ').count());
     let gait = gaits.pop().expect("stand at least");
     let typed = gait.to_uppercase().replacen(' ', "   \t", 1);
@@ -70,7 +71,7 @@ fn case_and_blanks_do_not_matter() {
 
 #[test]
 fn a_line_may_have_63_characters_and_no_more() {
-    let mut bench = awake(Fidelity::DataSheet);
+    let mut bench = boot_standing(Fidelity::DataSheet);
     let fits = format!("stand{}", " ".repeat(58));
     assert_eq!(bench.say(&fits), "ok stand");
     assert!(bench.say(&format!("{fits} ")).starts_with("err 6 "));
@@ -109,7 +110,7 @@ fn refused_poses() -> Vec<(String, u8)> {
                 _ => continue,
             }
         };
-        found[index].get_or_insert_with(|| pose_at(sweeps));
+        found[index].get_or_insert_with(|| pose_command(sweeps));
         if found.iter().all(Option::is_some) {
             break;
         }
@@ -130,8 +131,8 @@ fn refused_poses() -> Vec<(String, u8)> {
 /// are a type-2 margin below 0. It checks the strokes last.
 fn certain_refusal_code(solution: &Solution) -> Option<u8> {
     let broken = |by: f64, stroke: bool| {
-        let mut all = limits(by).violations(solution);
-        all.any(|violation| Check::STROKE.contains(&violation.what) == stroke)
+        let mut all = stricter_limits(by).violations(solution);
+        all.any(|violation| Check::STROKE.contains(&violation.check) == stroke)
     };
     let size = robot().lizard().links.l10 / 135.0;
     let ends = [&solution.head, &solution.tail];
@@ -146,7 +147,7 @@ fn certain_refusal_code(solution: &Solution) -> Option<u8> {
 
 /// Returns the robot's limits, made stricter by `by`: the sines by `by`, and the strokes by `10 * by` mm for a robot
 /// of the paper's size.
-fn limits(by: f64) -> Limits {
+fn stricter_limits(by: f64) -> Limits {
     let limits = robot().limits();
     let size = robot().lizard().links.l10 / 135.0;
     Limits {
@@ -185,9 +186,9 @@ fn every_refusal_has_its_code_and_changes_nothing() {
     let poses = refused_poses();
     let poses = poses.iter().map(|(line, code)| (line.as_str(), *code));
     let refused: Vec<(&str, u8)> = refused.into_iter().chain(poses).collect();
-    in_both(|fidelity| {
-        let mut bench = robot_after(&first_moving_gait(), fidelity);
-        let mut quiet = robot_after(&first_moving_gait(), fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut bench = boot_and_command(&first_moving_gait(), fidelity);
+        let mut quiet = boot_and_command(&first_moving_gait(), fidelity);
         for &(line, code) in &refused {
             let answer = bench.say(line);
             let expected = format!("err {code} ");
@@ -202,8 +203,8 @@ fn every_refusal_has_its_code_and_changes_nothing() {
             board.uno.run_cycles(left);
         }
         assert_eq!(
-            bench.run_for_frames(2 * SECOND),
-            quiet.run_for_frames(2 * SECOND)
+            bench.run_for_frames(2 * FRAMES_PER_SECOND),
+            quiet.run_for_frames(2 * FRAMES_PER_SECOND)
         );
         let (printed, untold) = (Status::of(&mut bench), Status::of(&mut quiet));
         assert_eq!(printed.0, untold.0);
@@ -212,11 +213,11 @@ fn every_refusal_has_its_code_and_changes_nothing() {
 
 #[test]
 fn while_the_servos_rest_only_stand_moves_them() {
-    in_both(|fidelity| {
-        let mut bench = awake(fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut bench = boot_standing(fidelity);
         assert_eq!(bench.say("rest"), "ok rest");
-        let others = gaits().into_iter().skip(1);
-        for line in others.chain(["stop".into(), pose_at([0.0; 4])]) {
+        let others = gait_commands().into_iter().skip(1);
+        for line in others.chain(["stop".into(), pose_command([0.0; 4])]) {
             assert!(bench.say(&line).starts_with("err 7 "), "{line}");
         }
         for line in ["rest", "speed 80", "watch 0", "help", "status"] {
@@ -240,7 +241,7 @@ fn while_the_servos_rest_only_stand_moves_them() {
 
 #[test]
 fn help_names_every_gait_and_every_command() {
-    let mut bench = awake(Fidelity::DataSheet);
+    let mut bench = boot_standing(Fidelity::DataSheet);
     for line in ["help", "?"] {
         let (notes, answer) = bench.ask(line);
         assert_eq!(answer, "ok help");
@@ -260,12 +261,12 @@ fn help_names_every_gait_and_every_command() {
 
 #[test]
 fn status_agrees_with_the_pulses() {
-    in_both(|fidelity| {
-        let mut bench = robot_after(&first_moving_gait(), fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut bench = boot_and_command(&first_moving_gait(), fidelity);
         bench.say("stop");
         bench.run_ms(100);
         let status = Status::of(&mut bench);
-        let sent = instants(robot(), &bench.run_for_frames(1))[0]
+        let sent = servo_frames_of(robot(), &bench.run_for_frames(1))[0]
             .angles
             .expect("four pulses");
         for (servo, (printed, sent)) in status.pose().into_iter().zip(sent).enumerate() {
@@ -286,7 +287,7 @@ fn status_agrees_with_the_pulses() {
 
 #[test]
 fn status_counts_fifty_frames_a_second_and_follows_the_phase() {
-    let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
+    let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
     bench.run_ms(3000); // the move to the gait's first pose
     let moving = first_moving_gait();
     let gait = robot().gait(&moving).expect("a gait");
@@ -319,12 +320,12 @@ fn status_counts_fifty_frames_a_second_and_follows_the_phase() {
 
 #[test]
 fn watch_reports_the_pose_of_every_nth_frame_until_it_is_switched_off() {
-    in_both(|fidelity| {
-        let mut bench = robot_after(&first_moving_gait(), fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut bench = boot_and_command(&first_moving_gait(), fidelity);
         assert_eq!(bench.say("watch 7"), "ok watch 7");
         let received = bench.lines().len();
         let frames = bench.run_for_frames(75);
-        let sent = instants(robot(), &frames);
+        let sent = servo_frames_of(robot(), &frames);
         // A report after the beginning of the last frame may belong to the next one.
         let end = frames[74].start;
         let lines: Vec<String> = bench.lines()[received..]
@@ -340,7 +341,7 @@ fn watch_reports_the_pose_of_every_nth_frame_until_it_is_switched_off() {
             let time: u64 = time.parse().expect("a frame");
             assert!(last.is_none_or(|last| time == last + 7), "{lines:?}");
             last = Some(time);
-            let printed = angles(pose);
+            let printed = parse_angles(pose);
             let is_sent = sent.iter().any(|at| {
                 let sent = at.angles.expect("four pulses");
                 (0..4).all(|i| (printed[i] - sent[i]).abs() <= MAX_PRINT_ERROR)
@@ -356,14 +357,14 @@ fn watch_reports_the_pose_of_every_nth_frame_until_it_is_switched_off() {
 
 #[test]
 fn half_speed_takes_twice_the_time() {
-    in_both(|fidelity| {
-        let mut bench = robot_after(&first_moving_gait(), fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut bench = boot_and_command(&first_moving_gait(), fidelity);
         bench.run_ms(3000); // the move to the gait's first pose
         let moving = first_moving_gait();
         let gait = robot().gait(&moving).expect("a gait");
         // The pace is a multiple of 1/1024, so a pace of 10 % has an error of up to half a percent.
-        let frames = (gait.period() * SECOND as f64).ceil() as u64;
-        let fastest = robot().pace().gait_slew / SECOND as f64;
+        let frames = (gait.period() * FRAMES_PER_SECOND as f64).ceil() as u64;
+        let fastest = robot().pace().gait_slew / FRAMES_PER_SECOND as f64;
         let mut spans: Vec<u64> = Vec::new();
         for (percent, times) in [(100, 1), (50, 2), (10, 10)] {
             let line = format!("speed {percent}");
@@ -376,7 +377,7 @@ fn half_speed_takes_twice_the_time() {
                 // Allows half a percent of a cycle, and the part of a frame by which a cycle is no whole number of
                 // frames.
                 let frame = 16.0 * servo.us_per_degree.abs() * fastest;
-                let max = 0.005 * gait.period() * SECOND as f64 * frame + frame + 2.0;
+                let max = 0.005 * gait.period() * FRAMES_PER_SECOND as f64 * frame + frame + 2.0;
                 for (here, later) in once.iter().zip(again) {
                     let error = here[i].abs_diff(later[i]) as f64;
                     assert!(error <= max, "{percent} %: {error} cycles after a cycle");

@@ -3,17 +3,17 @@
 
 use fastrand::Rng;
 use lizard_host::sim::core_run;
-use lizard_host::sim::frame::{FRAME, first_cycle, frames, servo_pins};
+use lizard_host::sim::frame::{FRAME, first_cycle, group_frames, servo_pins};
 use lizard_host_tests::{FirmwareBench, minutes, robot};
 use simulated_uno::{CYCLES_PER_MS, FREQUENCY, Fidelity};
 
-use crate::{Status, awake, comparable_line, for_each};
+use crate::{Status, boot_standing, comparable_line, for_each};
 
 /// Cycles that one byte takes on the serial line, rounded up.
-const BYTE: u64 = 1400;
+const CYCLES_PER_BYTE: u64 = 1400;
 
 /// Returns the last cycle that is compared.
-fn end() -> u64 {
+fn end_cycle() -> u64 {
     60 * minutes() * FREQUENCY
 }
 
@@ -60,9 +60,9 @@ fn send_random_lines(bench: &mut FirmwareBench, first: u64, rng: &mut Rng) -> u3
     let mut written = 0;
     // A frame's tick comes one slot before A1's pulse.
     let tick = first - FRAME / 5;
-    while bench.uno.cycle() < end() - FREQUENCY {
+    while bench.uno.cycle() < end_cycle() - FREQUENCY {
         let line = random_line(rng);
-        let sending = (line.len() as u64 + 1) * BYTE;
+        let sending = (line.len() as u64 + 1) * CYCLES_PER_BYTE;
         let wait = rng.u64(..40) * rng.u64(..40) * CYCLES_PER_MS;
         let earliest = bench.uno.cycle() + written + wait + sending;
         let frame = (earliest - tick).div_ceil(FRAME);
@@ -87,7 +87,7 @@ fn random_commands_give_the_same_widths_on_the_avr_and_here() {
         (Fidelity::DataSheet, 3),
     ];
     for_each(&cases, |&(fidelity, seed)| {
-        let mut bench = awake(fidelity);
+        let mut bench = boot_standing(fidelity);
         let pins = servo_pins(robot());
         let up = |edge: &&simulated_uno::Edge| edge.pin == pins[0] && edge.high;
         let first = bench
@@ -104,9 +104,9 @@ fn random_commands_give_the_same_widths_on_the_avr_and_here() {
             (0.0, 0.0)
         );
 
-        bench.uno.run_until_cycle(end());
+        bench.uno.run_until_cycle(end_cycle());
         let count = (bench.uno.cycle() - first_cycle(first)) / FRAME;
-        let sent = frames(&bench.uno.edges(), pins, first, count);
+        let sent = group_frames(&bench.uno.edges(), pins, first, count);
         let commands = core_run::play(
             *robot().firmware(),
             &bench.uno.received_by_uno(),

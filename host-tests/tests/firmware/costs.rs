@@ -4,7 +4,7 @@ use lizard_host::bench::{Figures, rows};
 use lizard_host_tests::{FRAME, FirmwareBench, patrolling, robot};
 use simulated_uno::Fidelity;
 
-use crate::{SECOND, first_moving_gait, robot_after};
+use crate::{FRAMES_PER_SECOND, boot_and_command, first_moving_gait};
 
 #[test]
 fn every_budget_is_met() {
@@ -42,10 +42,10 @@ fn every_budget_is_met() {
 fn the_processor_is_awake_for_less_than_a_tenth_of_any_motion() {
     for fidelity in [Fidelity::Stock, Fidelity::DataSheet] {
         for gait in robot().gaits() {
-            let mut bench = robot_after(&gait.name().replace('-', " "), fidelity);
+            let mut bench = boot_and_command(&gait.name().replace('-', " "), fidelity);
             let awake = bench.uno.awake_cycles();
             bench.run_ms(4000);
-            let awake = (bench.uno.awake_cycles() - awake) / (4 * SECOND);
+            let awake = (bench.uno.awake_cycles() - awake) / (4 * FRAMES_PER_SECOND);
             assert!(
                 awake < FRAME / 10,
                 "{}: {awake} cycles in a frame",
@@ -57,10 +57,10 @@ fn the_processor_is_awake_for_less_than_a_tenth_of_any_motion() {
 
 #[test]
 fn every_tick_computes_one_frame() {
-    let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
+    let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
     bench.run_for_frames(0);
     let calls = bench.time_calls("Control::frame", 2000);
-    assert_eq!(calls.len() as u64, 2 * SECOND);
+    assert_eq!(calls.len() as u64, 2 * FRAMES_PER_SECOND);
     for pair in calls.windows(2) {
         // The time from each tick to the next is constant, except for an instruction in progress and for
         // branches.

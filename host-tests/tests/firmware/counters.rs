@@ -3,12 +3,12 @@
 use lizard_host::sim::frame::FRAME;
 use simulated_uno::Fidelity;
 
-use crate::walk::{SLOT, Walk};
-use crate::{Status, awake, in_both};
+use crate::walk::{ReferenceRun, SLOT_CYCLES};
+use crate::{Status, boot_standing, run_in_both_simulations};
 
 #[test]
 fn each_overrun_of_the_receiver_is_counted() {
-    let mut bench = awake(Fidelity::DataSheet);
+    let mut bench = boot_standing(Fidelity::DataSheet);
     let mut overruns = 0;
     for n in 1..=5 {
         // Two bytes wait in the buffer, a third is in the shift register, and more arrive.
@@ -26,8 +26,8 @@ fn each_overrun_of_the_receiver_is_counted() {
 
 #[test]
 fn a_count_that_carries_while_main_reads_it_is_read_as_before_or_after() {
-    in_both(|fidelity| {
-        let mut walk = Walk::stand(fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut walk = ReferenceRun::start_standing(fidelity);
         let late = walk.address("pulses::LATE");
         // From here on, the robot has stopped because of a late pulse, and the count of frames has four digits, so
         // all answers have the same length.
@@ -36,13 +36,13 @@ fn a_count_that_carries_while_main_reads_it_is_read_as_before_or_after() {
         let start = walk.next_frame();
         let mut seen = [0, 0];
         // Main reads the count shortly before it writes the answer's last part, when most of the earlier parts are
-        // sent. Ticks and edges delay that, so the delay is measured at the same place in the frame at which the
+        // sent. Ticks and edges delay this read, so the delay is measured at the point of the frame at which the
         // read is to happen.
-        let rise = |n: u64| start + 3 * n * FRAME + SLOT;
+        let rise = |n: u64| start + 3 * n * FRAME + SLOT_CYCLES;
         let (mut written, mut early, mut frame) = (150_000, 2_800, 0);
         loop {
             frame += 1;
-            let again = last_part(&mut walk, rise(frame) - early - written);
+            let again = measure_answer_delay(&mut walk, rise(frame) - early - written);
             if again == written {
                 break;
             }
@@ -61,7 +61,7 @@ fn a_count_that_carries_while_main_reads_it_is_read_as_before_or_after() {
             walk.bench.uno.poke(late, 255);
             walk.bench.uno.poke(late + 1, 0);
             let lines_before = walk.bench.lines().len();
-            ask_at(&mut walk, rise - early - written);
+            send_status_at(&mut walk, rise - early - written);
             walk.run_to(rise - early - 500 + 2 * n);
             let now = walk.bench.uno.cycle();
             walk.bench.uno.stall_main(rise + 1_000 - now);
@@ -89,7 +89,7 @@ fn a_count_that_carries_while_main_reads_it_is_read_as_before_or_after() {
 }
 
 /// Sends `status` so that the line's last byte arrives at cycle `arrival`.
-fn ask_at(walk: &mut Walk, arrival: u64) {
+fn send_status_at(walk: &mut ReferenceRun, arrival: u64) {
     walk.run_to(arrival - 12_000);
     walk.bench.uno.send(b"status");
     // The receiver has a complete byte 9.5 bits after its start.
@@ -99,8 +99,8 @@ fn ask_at(walk: &mut Walk, arrival: u64) {
 
 /// Returns the cycles from the last byte of `status`, which arrives at cycle `arrival`, to the last part of its
 /// answer, which contains the counts.
-fn last_part(walk: &mut Walk, arrival: u64) -> u64 {
-    ask_at(walk, arrival);
+fn measure_answer_delay(walk: &mut ReferenceRun, arrival: u64) -> u64 {
+    send_status_at(walk, arrival);
     let parts = walk.bench.time_calls("print::answer", 30);
     assert_eq!(parts.len(), 3, "{parts:?}");
     parts[2].enter - arrival
@@ -108,7 +108,7 @@ fn last_part(walk: &mut Walk, arrival: u64) -> u64 {
 
 #[test]
 fn a_counter_that_is_full_stays_full() {
-    let mut walk = Walk::stand(Fidelity::DataSheet);
+    let mut walk = ReferenceRun::start_standing(Fidelity::DataSheet);
     let late = walk.address("pulses::LATE");
     walk.bench.uno.poke(late, 0xff);
     walk.bench.uno.poke(late + 1, 0xff);
@@ -116,6 +116,6 @@ fn a_counter_that_is_full_stays_full() {
     walk.run_to(rise - 600);
     walk.bench.uno.block_interrupts(700);
     walk.bench.run_ms(20);
-    assert_eq!(walk.late(), 65_535);
+    assert_eq!(walk.late_edge_count(), 65_535);
     assert_eq!(Status::of(&mut walk.bench).number("late"), 65_535.0);
 }

@@ -13,11 +13,12 @@ use lizard_host_tests::{FRAME, FirmwareBench, rng, robot, root};
 use lizard_robot::Robot;
 use simulated_uno::{Edge, Fidelity, Image, Pin};
 
-use crate::{first_moving_gait, for_each, in_both, pose_at};
+use crate::{first_moving_gait, for_each, pose_command, run_in_both_simulations};
 
-const MISSING: &str = "# fault: no robot in the flash, write one";
-const FORMAT: &str = "# fault: the robot in the flash is for another version, write it again";
-const DAMAGED: &str = "# fault: the robot in the flash is damaged, write it again";
+const MISSING_ROBOT_NOTE: &str = "# fault: no robot in the flash, write one";
+const OTHER_VERSION_NOTE: &str =
+    "# fault: the robot in the flash is for another version, write it again";
+const DAMAGED_ROBOT_NOTE: &str = "# fault: the robot in the flash is damaged, write it again";
 
 const LED: Pin = Pin::d(13);
 
@@ -52,7 +53,7 @@ fn damage_section(
 
 /// Returns the robot's section with a change and a checksum that is correct for the changed bytes.
 fn damage_with_checksum(what: &str, change: impl FnOnce(&mut Vec<u8>)) -> Damage {
-    damage_section(what, DAMAGED, |section| {
+    damage_section(what, DAMAGED_ROBOT_NOTE, |section| {
         change(section);
         seal(section);
     })
@@ -67,11 +68,11 @@ fn put_word(section: &mut [u8], offset: usize, word: u16) {
 /// Returns damages that leave no section, a part of one, or a section for another version.
 fn missing_sections() -> Vec<Damage> {
     let mut all = vec![
-        damage_section("erased flash", MISSING, Vec::clear),
-        damage_section("zeros", MISSING, |section| {
+        damage_section("erased flash", MISSING_ROBOT_NOTE, Vec::clear),
+        damage_section("zeros", MISSING_ROBOT_NOTE, |section| {
             *section = vec![0; SPACE.into()];
         }),
-        damage_section("a program's noise", MISSING, |section| {
+        damage_section("a program's noise", MISSING_ROBOT_NOTE, |section| {
             *section = vec![0; SPACE.into()];
             rng(160).fill(section);
         }),
@@ -79,13 +80,13 @@ fn missing_sections() -> Vec<Damage> {
     let length = robot().section().len();
     let header = size_of::<Header>();
     for (end, printed) in [
-        (3, MISSING),
-        (5, FORMAT),
-        (7, DAMAGED),
-        (header, DAMAGED),
-        (header + size_of::<Numbers>() + 1, DAMAGED),
-        (length / 2, DAMAGED),
-        (length - 30, DAMAGED),
+        (3, MISSING_ROBOT_NOTE),
+        (5, OTHER_VERSION_NOTE),
+        (7, DAMAGED_ROBOT_NOTE),
+        (header, DAMAGED_ROBOT_NOTE),
+        (header + size_of::<Numbers>() + 1, DAMAGED_ROBOT_NOTE),
+        (length / 2, DAMAGED_ROBOT_NOTE),
+        (length - 30, DAMAGED_ROBOT_NOTE),
     ] {
         let what = format!("cut at byte {end}");
         all.push(damage_section(what, printed, |section| {
@@ -100,7 +101,7 @@ fn missing_sections() -> Vec<Damage> {
     ] {
         all.push(damage_section(
             format!("version {format}"),
-            FORMAT,
+            OTHER_VERSION_NOTE,
             |section| {
                 section[4..6].copy_from_slice(&format.to_le_bytes());
             },
@@ -131,13 +132,15 @@ fn flipped_bits() -> Vec<Damage> {
             section[byte] ^= 1 << bit;
         })
     };
-    let printed = [MISSING, FORMAT].into_iter().chain([DAMAGED; 5]);
+    let printed = [MISSING_ROBOT_NOTE, OTHER_VERSION_NOTE]
+        .into_iter()
+        .chain([DAMAGED_ROBOT_NOTE; 5]);
     let mut all: Vec<Damage> = fields
         .into_iter()
         .zip(printed)
         .map(|(at, printed)| flip(at, printed))
         .collect();
-    all.extend(stretches.map(|at| flip(at, DAMAGED)));
+    all.extend(stretches.map(|at| flip(at, DAMAGED_ROBOT_NOTE)));
     all
 }
 
@@ -174,7 +177,7 @@ fn wrong_sections() -> Vec<Damage> {
 }
 
 /// Returns a board with this damage in its flash, just powered on.
-fn board(damage: &Damage, fidelity: Fidelity) -> FirmwareBench {
+fn boot_damaged_board(damage: &Damage, fidelity: Fidelity) -> FirmwareBench {
     let mut image: Image = FirmwareBench::image();
     let space = u32::from(START)..u32::from(START) + u32::from(SPACE);
     image.replace(space, &damage.section).expect("it fits");
@@ -183,7 +186,7 @@ fn board(damage: &Damage, fidelity: Fidelity) -> FirmwareBench {
 
 /// Checks that the firmware finds no robot, sends no pulse and reports the damage.
 fn assert_finds_no_robot(damage: &Damage) {
-    let bench = &mut board(damage, Fidelity::DataSheet);
+    let bench = &mut boot_damaged_board(damage, Fidelity::DataSheet);
     bench.run_ms(300);
     let banner = format!("# lizard {} without a robot", env!("CARGO_PKG_VERSION"));
     let lines: Vec<String> = bench.lines().iter().map(|line| line.text.clone()).collect();
@@ -193,9 +196,13 @@ fn assert_finds_no_robot(damage: &Damage) {
     let questions = [Word::Help, Word::QuestionMark, Word::Status, Word::Watch];
     let others = Word::ALL.iter().filter(|word| !questions.contains(word));
     let examples = others.map(|word| word.example().to_owned());
-    for line in [first_moving_gait(), "stand".to_owned(), pose_at([1.0; 4])]
-        .into_iter()
-        .chain(examples)
+    for line in [
+        first_moving_gait(),
+        "stand".to_owned(),
+        pose_command([1.0; 4]),
+    ]
+    .into_iter()
+    .chain(examples)
     {
         let (notes, answer) = bench.ask(&line);
         assert_eq!(answer, "err 10 no robot in the flash", "{line}");
@@ -224,7 +231,7 @@ fn assert_finds_no_robot(damage: &Damage) {
     for pin in (2..=12).chain(14..=19).map(Pin::arduino) {
         assert!(!bench.uno.is_high(pin), "{pin}");
     }
-    assert_eq!(bench.uno.resets(), 0);
+    assert_eq!(bench.uno.watchdog_resets(), 0);
     assert_eq!(bench.uno.reset_events().len(), 1);
     assert_eq!(bench.uno.eeprom_operations(), []);
     assert!(bench.uno.eeprom().iter().all(|byte| *byte == 0xff));
@@ -245,7 +252,7 @@ fn impossible_numbers_move_no_servo_even_with_a_valid_checksum() {
     for_each(&wrong_sections(), assert_finds_no_robot);
 }
 
-/// The check of the section is all that the start costs more than with a compiled-in robot.
+/// Checking the section is the only cost at the start that a compiled-in robot would not have.
 #[test]
 fn the_largest_section_is_checked_within_a_frame() {
     for_each(
@@ -270,8 +277,8 @@ fn the_largest_section_is_checked_within_a_frame() {
 
 #[test]
 fn without_a_robot_the_led_flashes_eight_times_and_pauses() {
-    in_both(|fidelity| {
-        let bench = &mut board(&missing_sections()[0], fidelity);
+    run_in_both_simulations(|fidelity| {
+        let bench = &mut boot_damaged_board(&missing_sections()[0], fidelity);
         bench.run_ms(8_000);
         let edges = bench.uno.edges();
         let led: Vec<Edge> = edges.into_iter().filter(|edge| edge.pin == LED).collect();

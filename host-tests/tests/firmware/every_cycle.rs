@@ -3,13 +3,13 @@
 use lizard_host::sim::frame::FRAME;
 use simulated_uno::Fidelity;
 
-use crate::in_both;
-use crate::walk::Walk;
+use crate::run_in_both_simulations;
+use crate::walk::ReferenceRun;
 
 /// Returns the number of bytes to send and the interval between two bytes in cycles, long enough for main to fall
 /// asleep. With the data sheet's corrections, the bytes cover every cycle of a frame, since the interval and the
 /// frame have no common factor. In stock simavr, they cover every fifth cycle, since the common factor is five.
-const fn sweep(fidelity: Fidelity) -> (u64, u64) {
+const fn byte_count_and_interval(fidelity: Fidelity) -> (u64, u64) {
     match fidelity {
         Fidelity::DataSheet => (FRAME, 3_001),
         Fidelity::Stock => (FRAME / 5, 3_005),
@@ -21,9 +21,9 @@ fn a_byte_at_any_cycle_of_a_frame_moves_no_edge_and_is_not_lost() {
     // The line is no command, so that answers are sent, too. They take a third of the lines' time, and main takes
     // no byte until an answer is nearly sent.
     let line = format!("{}\n", "z".repeat(59));
-    in_both(|fidelity| {
-        let (bytes, apart) = sweep(fidelity);
-        let mut walk = Walk::begin(fidelity);
+    run_in_both_simulations(|fidelity| {
+        let (bytes, apart) = byte_count_and_interval(fidelity);
+        let mut walk = ReferenceRun::start_walking(fidelity);
         let answers = walk.bench.lines().len();
         let start = walk.next_frame();
         let begin = walk.bench.uno.cycle();
@@ -36,9 +36,9 @@ fn a_byte_at_any_cycle_of_a_frame_moves_no_edge_and_is_not_lost() {
         let frames = walk.frames_since(start);
         assert!(frames.len() as u64 >= bytes * apart / FRAME);
         for (frame, asked) in frames {
-            assert_eq!(frame.all(), Some(asked), "{frame:?}");
+            assert_eq!(frame.all_widths(), Some(asked), "{frame:?}");
         }
-        assert_eq!((walk.late(), walk.word("serial::LOST")), (0, 0));
+        assert_eq!((walk.late_edge_count(), walk.word("serial::LOST")), (0, 0));
         let answers = (walk.bench.lines().len() - answers) as u64;
         assert_eq!(answers, bytes / line.len() as u64);
     });

@@ -4,30 +4,30 @@ use lizard_host::sim::frame::FRAME;
 use lizard_host_tests::FirmwareBench;
 use simulated_uno::Fidelity;
 
-use crate::kept::{flashes, pulses, pulses_in, widths_now};
-use crate::walk::Walk;
-use crate::{Status, first_moving_gait, robot_after};
+use crate::kept::{count_flashes, measure_widths, recorded_pulses, run_for_pulses};
+use crate::walk::ReferenceRun;
+use crate::{Status, boot_and_command, first_moving_gait};
 
 /// Checks a fault's effects: nothing moves, `status` and exactly one line name it, and the LED flashes `code`
 /// times.
 fn assert_stopped(bench: &mut FirmwareBench, word: &str, message: &str, code: usize) {
     let status = Status::of(bench);
     assert_eq!((status.text("gait"), status.text("fault")), ("stop", word));
-    let held = widths_now(bench);
-    for (pulses, width) in pulses_in(bench, 1000).iter().zip(held) {
+    let held = measure_widths(bench);
+    for (pulses, width) in run_for_pulses(bench, 1000).iter().zip(held) {
         assert!(pulses.len() >= 49 && pulses.iter().all(|pulse| pulse.width == width));
     }
     let line = format!("# fault: {message}");
     let printed = bench.lines().iter().filter(|printed| printed.text == line);
     assert_eq!(printed.count(), 1, "{line}");
-    let flashes = flashes(bench, 12);
+    let flashes = count_flashes(bench, 12);
     assert!(flashes.len() >= 3, "{flashes:?}");
     assert!(flashes.iter().all(|count| *count == code), "{flashes:?}");
 }
 
 #[test]
 fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says() {
-    let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
+    let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
     bench.say("deadman 800");
     let start = bench.uno.cycle();
     bench.run_ms(700);
@@ -58,7 +58,7 @@ fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says() {
 
 #[test]
 fn deadman_is_off_unless_set_and_leaves_a_robot_that_stands_alone() {
-    let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
+    let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
     bench.run_ms(70_000);
     assert_eq!(Status::of(&mut bench).text("fault"), "none");
     bench.say("stand");
@@ -73,12 +73,12 @@ fn deadman_is_off_unless_set_and_leaves_a_robot_that_stands_alone() {
 
 #[test]
 fn a_late_edge_stops_the_motion_and_its_pulse_is_dropped() {
-    let mut walk = Walk::begin(Fidelity::DataSheet);
+    let mut walk = ReferenceRun::start_walking(Fidelity::DataSheet);
     let rise = walk.next_frame();
     walk.run_to(rise - 600);
     walk.bench.uno.block_interrupts(700);
     walk.run_to(rise + 2 * FRAME);
-    let edges = pulses(&walk.bench);
+    let edges = recorded_pulses(&walk.bench);
     assert!(
         edges[0]
             .iter()
@@ -94,7 +94,7 @@ fn a_late_edge_stops_the_motion_and_its_pulse_is_dropped() {
 #[test]
 fn a_stack_that_has_reached_the_data_stops_the_motion_for_good() {
     for byte in 0..4 {
-        let mut walk = Walk::begin(Fidelity::DataSheet);
+        let mut walk = ReferenceRun::start_walking(Fidelity::DataSheet);
         let guard = walk.address("lizard_stack_guard") + byte;
         let before = walk.bench.uno.peek(guard);
         walk.bench.uno.poke(guard, before ^ 0x10);
@@ -104,8 +104,8 @@ fn a_stack_that_has_reached_the_data_stops_the_motion_for_good() {
         // The data may be corrupt, so the robot does not move again.
         walk.bench.say(&first_moving_gait());
         walk.bench.run_ms(100);
-        let held = widths_now(&mut walk.bench);
+        let held = measure_widths(&mut walk.bench);
         walk.bench.run_ms(1000);
-        assert_eq!(widths_now(&mut walk.bench), held);
+        assert_eq!(measure_widths(&mut walk.bench), held);
     }
 }

@@ -2,18 +2,18 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use lizard_host::sim::analysis::instants;
+use lizard_host::sim::analysis::servo_frames_of;
 use lizard_host_tests::robot;
 use lizard_robot::CheckedGait;
 use simulated_uno::Fidelity;
 
-use crate::{SECOND, awake, for_each};
+use crate::{FRAMES_PER_SECOND, boot_standing, for_each};
 
 /// Largest deviation of the gait tables from floating point that the project promises, deg.
-const TABLES: f64 = 0.50;
+const MAX_TABLE_ERROR: f64 = 0.50;
 /// Returns the largest error from rounding to a cycle of 62.5 ns, deg: half a cycle each for the width and for the
 /// neutral width.
-fn cycle() -> f64 {
+fn max_rounding_error() -> f64 {
     let finest = robot().servos().map(|servo| servo.us_per_degree.abs());
     1.0 / 16.0 / finest.into_iter().fold(f64::INFINITY, f64::min)
 }
@@ -24,19 +24,24 @@ const ACCELERATION: (usize, f64) = (7, 147.0 / 1024.0);
 
 /// Orders a gait one second after power-on and returns the servo angles of each frame from then on, deg.
 fn decode_angles(gait: &CheckedGait, fidelity: Fidelity) -> Vec<[f64; 4]> {
-    let mut bench = awake(fidelity);
+    let mut bench = boot_standing(fidelity);
     let line = gait.name().replace('-', " ");
     assert_eq!(bench.say(&line), format!("ok {line}"));
-    let frames = bench.run_for_frames((3.5 * gait.period() * SECOND as f64) as u64 + 3 * SECOND);
+    let frames = bench.run_for_frames(
+        (3.5 * gait.period() * FRAMES_PER_SECOND as f64) as u64 + 3 * FRAMES_PER_SECOND,
+    );
     let angles = |at: lizard_host::sim::analysis::ServoFrame| at.angles.expect("four pulses");
-    instants(robot(), &frames).into_iter().map(angles).collect()
+    servo_frames_of(robot(), &frames)
+        .into_iter()
+        .map(angles)
+        .collect()
 }
 
 /// Returns the phase of a gait this many frames after its start.
 fn phase(gait: &CheckedGait, frames: usize) -> f64 {
     let pace = |frame: usize| (frame as f64 * ACCELERATION.1).min(1.0);
     let full: f64 = (1..=frames).map(pace).sum();
-    gait.phase(full / SECOND as f64)
+    gait.phase(full / FRAMES_PER_SECOND as f64)
 }
 
 /// Returns the angles of a gait frame by frame from its start, in floating point, deg.
@@ -45,7 +50,7 @@ fn expected_angles(gait: &CheckedGait, frames: usize) -> Vec<[f64; 4]> {
 }
 
 /// Returns the largest deviation of any servo angle from the gait if the gait starts at frame `start`, deg.
-fn worst(float: &[[f64; 4]], frames: &[[f64; 4]], start: usize) -> f64 {
+fn max_deviation(float: &[[f64; 4]], frames: &[[f64; 4]], start: usize) -> f64 {
     let pairs = frames[start..].iter().flatten().zip(float.iter().flatten());
     pairs.fold(0.0, |largest, (actual, expected)| {
         (actual - expected).abs().max(largest)
@@ -54,11 +59,12 @@ fn worst(float: &[[f64; 4]], frames: &[[f64; 4]], start: usize) -> f64 {
 
 /// Returns the frame at which the gait starts: the frame with the smallest deviation, since the start is the only
 /// unknown of the comparison.
-fn first_frame(gait: &CheckedGait, float: &[[f64; 4]], frames: &[[f64; 4]]) -> usize {
-    let by_worst =
-        |a: &usize, b: &usize| worst(float, frames, *a).total_cmp(&worst(float, frames, *b));
+fn find_gait_start(gait: &CheckedGait, float: &[[f64; 4]], frames: &[[f64; 4]]) -> usize {
+    let by_worst = |a: &usize, b: &usize| {
+        max_deviation(float, frames, *a).total_cmp(&max_deviation(float, frames, *b))
+    };
     // The move to the first pose precedes the start, and a whole cycle must follow it.
-    let last = frames.len() - (gait.period() * SECOND as f64) as usize - 10;
+    let last = frames.len() - (gait.period() * FRAMES_PER_SECOND as f64) as usize - 10;
     let start = (0..last).min_by(by_worst);
     start.expect("a second has frames")
 }
@@ -69,14 +75,18 @@ fn the_pulses_of_every_gait_follow_it_frame_by_frame() {
         for gait in robot().gaits() {
             let frames = decode_angles(gait, *fidelity);
             let float = expected_angles(gait, frames.len());
-            let start = first_frame(gait, &float, &frames);
-            let error = worst(&float, &frames, start);
+            let start = find_gait_start(gait, &float, &frames);
+            let error = max_deviation(&float, &frames, start);
             println!(
                 "{:<10} {} frames, max {error:.4} deg",
                 gait.name(),
                 frames.len() - start
             );
-            assert!(error <= TABLES + cycle(), "{}: {error} deg", gait.name());
+            assert!(
+                error <= MAX_TABLE_ERROR + max_rounding_error(),
+                "{}: {error} deg",
+                gait.name()
+            );
             // One frame earlier or later would exceed the bound, so the comparison can tell frames
             // apart.
             if gait.moves() {
@@ -84,7 +94,11 @@ fn the_pulses_of_every_gait_follow_it_frame_by_frame() {
                 // The first frame has no previous one.
                 let others = [Some(start + 1), start.checked_sub(1)];
                 for other in others.into_iter().flatten() {
-                    assert!(worst(&float, &frames, other) > error, "{}", gait.name());
+                    assert!(
+                        max_deviation(&float, &frames, other) > error,
+                        "{}",
+                        gait.name()
+                    );
                 }
             }
         }
@@ -105,17 +119,17 @@ fn the_pulses_of_every_gait_lead_where_the_contact_model_says() {
         compared.fetch_add(usize::from(gait.moves()), Ordering::Relaxed);
         let frames = decode_angles(gait, Fidelity::DataSheet);
         let float = expected_angles(gait, frames.len());
-        let start = first_frame(gait, &float, &frames);
+        let start = find_gait_start(gait, &float, &frames);
         // Whole cycles, from the first frame at full pace that begins a cycle: two if a cycle is no whole number of
         // frames.
-        let cycles = if (gait.period() * SECOND as f64).fract() == 0.0 {
+        let cycles = if (gait.period() * FRAMES_PER_SECOND as f64).fract() == 0.0 {
             1
         } else {
             2
         };
         // If two cycles are no whole number of frames either, the missing part of a frame is negligible.
-        let length = (f64::from(cycles) * gait.period() * SECOND as f64) as usize;
-        let step = 1.0 / (gait.period() * SECOND as f64);
+        let length = (f64::from(cycles) * gait.period() * FRAMES_PER_SECOND as f64) as usize;
+        let step = 1.0 / (gait.period() * FRAMES_PER_SECOND as f64);
         let from = (start + ACCELERATION.0..frames.len())
             .find(|frame| {
                 let phase = phase(gait, frame - start);

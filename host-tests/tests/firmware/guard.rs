@@ -6,12 +6,12 @@ use lizard_core::numbers::part::{End, Side};
 use lizard_core::numbers::pose::Pose as Sweeps;
 use lizard_core::numbers::units::Sweep;
 use lizard_host::prove::{STEPS_BAND, margin_band};
-use lizard_host::sim::analysis::instants;
+use lizard_host::sim::analysis::servo_frames_of;
 use lizard_host_tests::robot;
 use lizard_kinematics::{self as kinematics, Limits, Pose, Solution, wrap};
 use simulated_uno::Fidelity;
 
-use crate::{SECOND, Status, awake, for_each, neutral_widths};
+use crate::{FRAMES_PER_SECOND, Status, boot_standing, for_each, neutral_widths};
 
 /// Returns the largest error of the guard's slider position against floating point, mm.
 fn stroke_band() -> f64 {
@@ -33,7 +33,7 @@ fn margin_error(type2: f64) -> f64 {
 }
 
 /// Returns the limits, made stricter by the guard's tolerance (`by` = 1) or less strict (`by` = -1).
-fn limits(by: f64) -> Limits {
+fn limits_with_tolerance(by: f64) -> Limits {
     let limits = robot().limits();
     let (margin, stroke) = (margin_error(limits.type2), stroke_band());
     Limits {
@@ -48,7 +48,7 @@ fn limits(by: f64) -> Limits {
 /// True if a pose (deg, chassis frame) is within these limits.
 fn is_safe(angles: [f64; 4], limits: &Limits) -> bool {
     let solved = robot().lizard().solve(&Pose::from(angles));
-    solved.is_ok_and(|solution| limits.allow(&solution))
+    solved.is_ok_and(|solution| limits.is_safe(&solution))
 }
 
 /// True if every servo's angle is inside its travel by more than the rounding.
@@ -72,7 +72,7 @@ fn near_pose(rng: &mut Rng, within: f64) -> [f64; 4] {
 fn random_far_pose(rng: &mut Rng) -> [f64; 4] {
     loop {
         let angles = near_pose(rng, 80.0);
-        if is_safe(angles, &limits(1.0)) && is_within_travel(angles) {
+        if is_safe(angles, &limits_with_tolerance(1.0)) && is_within_travel(angles) {
             return angles;
         }
     }
@@ -87,15 +87,15 @@ fn pose_line(angles: [f64; 4]) -> String {
 fn a_pose_is_accepted_exactly_where_floating_point_finds_it_safe() {
     for_each(&[20.0, 40.0, 80.0], |&within| {
         let mut rng = Rng::with_seed(within as u64);
-        let mut bench = awake(Fidelity::DataSheet);
+        let mut bench = boot_standing(Fidelity::DataSheet);
         let (mut accepted, mut refused) = (0, [0; 2]);
         for _ in 0..400 {
             let angles = near_pose(&mut rng, within);
             let answer = bench.say(&pose_line(angles));
-            if is_safe(angles, &limits(1.0)) && is_within_travel(angles) {
+            if is_safe(angles, &limits_with_tolerance(1.0)) && is_within_travel(angles) {
                 assert!(answer.starts_with("ok pose"), "{angles:?}: {answer}");
                 accepted += 1;
-            } else if !is_safe(angles, &limits(-1.0)) {
+            } else if !is_safe(angles, &limits_with_tolerance(-1.0)) {
                 let code = answer
                     .strip_prefix("err ")
                     .and_then(|rest| rest.chars().next());
@@ -161,7 +161,7 @@ fn float_value_and_tolerance(solution: &Solution, name: &str) -> Option<(f64, f6
 
 #[test]
 fn a_refusal_names_the_margin_and_its_value_or_says_that_it_knows_none() {
-    let mut bench = awake(Fidelity::DataSheet);
+    let mut bench = boot_standing(Fidelity::DataSheet);
     let mut rng = Rng::with_seed(3);
     let (mut named, mut unknown) = (0, 0);
     for _ in 0..400 {
@@ -222,7 +222,7 @@ fn no_frame_breaks_a_limit_for_any_commands() {
     ];
     for_each(&cases, |&(fidelity, seed)| {
         let mut rng = Rng::with_seed(seed);
-        let mut bench = awake(fidelity);
+        let mut bench = boot_standing(fidelity);
         let lines: Vec<String> = robot()
             .gaits()
             .iter()
@@ -236,10 +236,10 @@ fn no_frame_breaks_a_limit_for_any_commands() {
                 pose_line(random_far_pose(&mut rng))
             };
             assert!(bench.say(&line).starts_with("ok "), "{line}");
-            frames.extend(bench.run_for_frames(rng.u64(..2 * SECOND)));
+            frames.extend(bench.run_for_frames(rng.u64(..2 * FRAMES_PER_SECOND)));
         }
-        let lax = limits(-1.0);
-        let sent = instants(robot(), &frames);
+        let lax = limits_with_tolerance(-1.0);
+        let sent = servo_frames_of(robot(), &frames);
         for at in &sent {
             let angles = at.angles.expect("four pulses");
             assert!(is_safe(angles, &lax), "{at:?}");
@@ -276,7 +276,9 @@ fn poses_with_unsafe_path_between() -> Option<[[f64; 4]; 2]> {
             let share = f64::from(*n) / 100.0;
             let at = |i: usize| Sweep((from[i] + share * (to[i] - from[i])) as i16);
             let pose = Sweeps(std::array::from_fn(at));
-            Clearance::of(firmware, &pose).hazard(firmware).is_some()
+            Clearance::of(firmware, &pose)
+                .first_hazard(firmware)
+                .is_some()
         };
         (0..=100).filter(unsafe_at).count()
     };
@@ -302,7 +304,7 @@ fn poses_with_unsafe_path_between() -> Option<[[f64; 4]; 2]> {
 /// path between two safe poses.
 fn assert_every_safe_pose_is_reached() {
     let mut rng = Rng::with_seed(4);
-    let mut bench = awake(Fidelity::DataSheet);
+    let mut bench = boot_standing(Fidelity::DataSheet);
     for _ in 0..20 {
         let pose = random_far_pose(&mut rng);
         assert!(bench.say(&pose_line(pose)).starts_with("ok pose"));
@@ -325,17 +327,19 @@ fn a_path_that_breaks_a_limit_ends_before_that() {
         return;
     };
     for_each(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
-        let mut bench = awake(*fidelity);
+        let mut bench = boot_standing(*fidelity);
         assert!(bench.say(&pose_line(from)).starts_with("ok pose"));
         bench.run_ms(5000);
         assert!(bench.say(&pose_line(to)).starts_with("ok pose"));
         let note = bench.next_line(5000).expect("the robot tells");
         assert!(note.starts_with("# held in the last safe pose: "), "{note}");
         assert_eq!(Status::of(&mut bench).text("guard"), "held");
-        let frames = bench.run_for_frames(SECOND);
+        let frames = bench.run_for_frames(FRAMES_PER_SECOND);
         assert!(frames.iter().all(|frame| frame.widths == frames[0].widths));
-        let held = instants(robot(), &frames)[0].angles.expect("four pulses");
-        assert!(is_safe(held, &limits(-1.0)) && held != from);
+        let held = servo_frames_of(robot(), &frames)[0]
+            .angles
+            .expect("four pulses");
+        assert!(is_safe(held, &limits_with_tolerance(-1.0)) && held != from);
         // The robot can move again: the path back to neutral is safe.
         assert_eq!(bench.say("stand"), "ok stand");
         bench.run_ms(5000);

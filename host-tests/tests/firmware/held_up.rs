@@ -5,22 +5,22 @@ use lizard_host::sim::frame::{FRAME, Frame};
 use simulated_uno::{CYCLES_PER_MS, most_pins_high};
 
 use crate::pulses::servo_edges;
-use crate::walk::{SLOT, Walk};
-use crate::{in_both, neutral_widths};
+use crate::walk::{ReferenceRun, SLOT_CYCLES};
+use crate::{neutral_widths, run_in_both_simulations};
 
 /// Longest time for which other handlers and code with interrupts disabled may delay a servo interrupt, cycles.
 const MAX_BLOCKED: u64 = 160;
 
 /// An interval of `length` cycles with interrupts blocked, which begins `before` cycles before an edge.
 #[derive(Clone, Copy, Debug)]
-struct Hold {
-    before: u64,
+struct BlockedInterval {
+    cycles_before_edge: u64,
     length: u64,
 }
 
 /// The pulse edges that the blocked intervals delay.
 #[derive(Clone, Copy, PartialEq)]
-enum Edges {
+enum DelayedEdges {
     Rising,
     Falling,
     Both,
@@ -28,47 +28,70 @@ enum Edges {
 
 /// Runs one frame for each blocked interval, which delays the chosen edges of all servos. Returns the frames with
 /// their ordered widths.
-fn sweep(walk: &mut Walk, edges: Edges, holds: &[Hold]) -> Vec<(Frame, [u64; 4])> {
+fn run_blocked_frames(
+    walk: &mut ReferenceRun,
+    edges: DelayedEdges,
+    holds: &[BlockedInterval],
+) -> Vec<(Frame, [u64; 4])> {
     let start = walk.next_frame();
-    let commands = walk.commands(start, holds.len() as u64);
+    let commands = walk.expected_widths(start, holds.len() as u64);
     for (n, (hold, command)) in holds.iter().zip(commands).enumerate() {
         for (servo, width) in command.into_iter().enumerate() {
-            let rise = start + n as u64 * FRAME + servo as u64 * SLOT;
-            let both = [(Edges::Rising, rise), (Edges::Falling, rise + width)];
+            let rise = start + n as u64 * FRAME + servo as u64 * SLOT_CYCLES;
+            let both = [
+                (DelayedEdges::Rising, rise),
+                (DelayedEdges::Falling, rise + width),
+            ];
             for (edge, cycle) in both {
-                if edges == Edges::Both || edges == edge {
-                    walk.run_to(cycle - hold.before);
+                if edges == DelayedEdges::Both || edges == edge {
+                    walk.run_to(cycle - hold.cycles_before_edge);
                     walk.bench.uno.block_interrupts(hold.length);
                 }
             }
         }
     }
-    walk.run_to(start + holds.len() as u64 * FRAME - SLOT / 2);
+    walk.run_to(start + holds.len() as u64 * FRAME - SLOT_CYCLES / 2);
     walk.frames_since(start)
 }
 
 /// Returns blocked intervals of several lengths above [`MAX_BLOCKED`]. For each length, their starts are a few cycles
 /// apart: the first interval begins at the edge, the last one ends before it.
-fn holds_beyond_limit() -> Vec<Hold> {
+fn intervals_above_limit() -> Vec<BlockedInterval> {
     [200, 230, 300, 500, 900]
         .into_iter()
         .flat_map(|length| {
             let starts = (0..length + 300).step_by(7);
-            starts.map(move |before| Hold { before, length })
+            starts.map(move |before| BlockedInterval {
+                cycles_before_edge: before,
+                length,
+            })
         })
         .collect()
 }
 
 #[test]
 fn a_stretch_that_the_rules_allow_moves_no_edge_wherever_it_begins() {
-    in_both(|fidelity| {
-        let mut walk = Walk::begin(fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut walk = ReferenceRun::start_walking(fidelity);
         let length = MAX_BLOCKED;
-        let holds: Vec<Hold> = (0..450).map(|before| Hold { before, length }).collect();
-        for (n, (frame, asked)) in sweep(&mut walk, Edges::Both, &holds).iter().enumerate() {
-            assert_eq!(frame.all(), Some(*asked), "{:?}: {frame:?}", holds[n]);
+        let holds: Vec<BlockedInterval> = (0..450)
+            .map(|before| BlockedInterval {
+                cycles_before_edge: before,
+                length,
+            })
+            .collect();
+        for (n, (frame, asked)) in run_blocked_frames(&mut walk, DelayedEdges::Both, &holds)
+            .iter()
+            .enumerate()
+        {
+            assert_eq!(
+                frame.all_widths(),
+                Some(*asked),
+                "{:?}: {frame:?}",
+                holds[n]
+            );
         }
-        assert_eq!(walk.late(), 0);
+        assert_eq!(walk.late_edge_count(), 0);
     });
 }
 
@@ -76,11 +99,14 @@ fn a_stretch_that_the_rules_allow_moves_no_edge_wherever_it_begins() {
 
 #[test]
 fn a_late_rising_edge_drops_its_pulse_and_is_counted() {
-    in_both(|fidelity| {
-        let mut walk = Walk::stand(fidelity);
-        let holds = holds_beyond_limit();
+    run_in_both_simulations(|fidelity| {
+        let mut walk = ReferenceRun::start_standing(fidelity);
+        let holds = intervals_above_limit();
         let mut dropped = 0;
-        for (n, (frame, asked)) in sweep(&mut walk, Edges::Rising, &holds).iter().enumerate() {
+        for (n, (frame, asked)) in run_blocked_frames(&mut walk, DelayedEdges::Rising, &holds)
+            .iter()
+            .enumerate()
+        {
             for (sent, asked) in frame.widths.into_iter().zip(asked) {
                 dropped += u64::from(sent.is_none());
                 assert!(
@@ -95,18 +121,24 @@ fn a_late_rising_edge_drops_its_pulse_and_is_counted() {
             (edges / 4..edges * 3 / 4).contains(&dropped),
             "{dropped} of {edges}"
         );
-        assert_eq!(walk.late(), dropped);
+        assert_eq!(walk.late_edge_count(), dropped);
     });
 }
 
 #[test]
 fn a_late_falling_edge_is_made_at_once_and_counted() {
-    in_both(|fidelity| {
-        let mut walk = Walk::stand(fidelity);
-        let holds = holds_beyond_limit();
+    run_in_both_simulations(|fidelity| {
+        let mut walk = ReferenceRun::start_standing(fidelity);
+        let holds = intervals_above_limit();
         let mut late = 0;
-        for (n, (frame, asked)) in sweep(&mut walk, Edges::Falling, &holds).iter().enumerate() {
-            let Hold { before, length } = holds[n];
+        for (n, (frame, asked)) in run_blocked_frames(&mut walk, DelayedEdges::Falling, &holds)
+            .iter()
+            .enumerate()
+        {
+            let BlockedInterval {
+                cycles_before_edge: before,
+                length,
+            } = holds[n];
             for (sent, asked) in frame.widths().into_iter().zip(asked) {
                 late += u64::from(sent != *asked);
                 // After the blocked interval, the handler's prologue still takes its time.
@@ -123,20 +155,20 @@ fn a_late_falling_edge_is_made_at_once_and_counted() {
             (edges / 4..edges * 3 / 4).contains(&late),
             "{late} of {edges}"
         );
-        assert_eq!(walk.late(), late);
+        assert_eq!(walk.late_edge_count(), late);
     });
 }
 
 #[test]
 fn interrupts_off_for_most_of_a_slot_cost_its_pulse_and_nothing_else() {
-    in_both(|fidelity| {
-        let mut walk = Walk::stand(fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut walk = ReferenceRun::start_standing(fidelity);
         for (servo, length) in (0..4).zip([20_000, 30_000, 45_000, 62_000]) {
             let start = walk.next_frame();
-            let late = walk.late();
-            walk.run_to(start + servo * SLOT - 600);
+            let late = walk.late_edge_count();
+            walk.run_to(start + servo * SLOT_CYCLES - 600);
             walk.bench.uno.block_interrupts(length);
-            walk.run_to(start + 3 * FRAME - SLOT / 2);
+            walk.run_to(start + 3 * FRAME - SLOT_CYCLES / 2);
             for (n, (frame, asked)) in walk.frames_since(start).into_iter().enumerate() {
                 let mut expected = asked.map(Some);
                 if n == 0 {
@@ -144,7 +176,7 @@ fn interrupts_off_for_most_of_a_slot_cost_its_pulse_and_nothing_else() {
                 }
                 assert_eq!(frame.widths, expected, "A{} and {length}", servo + 1);
                 // Each pulse starts exactly on the grid of slots.
-                let starts = [0, 1, 2, 3].map(|n| frame.start + n * SLOT);
+                let starts = [0, 1, 2, 3].map(|n| frame.start + n * SLOT_CYCLES);
                 let on_grid =
                     |(actual, due): (Option<u64>, u64)| actual.is_none_or(|actual| actual == due);
                 assert!(
@@ -152,15 +184,15 @@ fn interrupts_off_for_most_of_a_slot_cost_its_pulse_and_nothing_else() {
                     "{frame:?}"
                 );
             }
-            assert_eq!(walk.late(), late + 1);
+            assert_eq!(walk.late_edge_count(), late + 1);
         }
     });
 }
 
 #[test]
 fn a_falling_edge_that_is_missed_is_made_when_the_next_slot_begins() {
-    in_both(|fidelity| {
-        let mut walk = Walk::stand(fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut walk = ReferenceRun::start_standing(fidelity);
         let pins = walk.bench.pins();
         let neutral = neutral_widths();
         // The blocked interval ends between 220 cycles before the next slot's edge and 360 cycles after it.
@@ -173,13 +205,13 @@ fn a_falling_edge_that_is_missed_is_made_when_the_next_slot_begins() {
                 assert!(walk.bench.uno.run_until(2 * FRAME, 100, high));
                 walk.bench.uno.run_cycles(neutral[servo] - 500);
                 let began = walk.bench.uno.edges().last().expect("its rise").cycle;
-                let late = walk.late();
-                let until = began + SLOT - 220 + beyond;
+                let late = walk.late_edge_count();
+                let until = began + SLOT_CYCLES - 220 + beyond;
                 let length = until - walk.bench.uno.cycle();
                 walk.bench.uno.block_interrupts(length);
                 walk.bench.run_ms(40);
                 let what = format!("A{} and {beyond}", servo + 1);
-                assert_eq!(walk.late(), late + 1, "{what}");
+                assert_eq!(walk.late_edge_count(), late + 1, "{what}");
                 let widths: Vec<u64> = walk
                     .bench
                     .uno
@@ -188,7 +220,7 @@ fn a_falling_edge_that_is_missed_is_made_when_the_next_slot_begins() {
                     .map(|p| p.width)
                     .collect();
                 assert!(
-                    (SLOT - 300..SLOT + beyond + 100).contains(&widths[0]),
+                    (SLOT_CYCLES - 300..SLOT_CYCLES + beyond + 100).contains(&widths[0]),
                     "{what}: {widths:?}"
                 );
                 assert!(
@@ -208,8 +240,8 @@ fn a_falling_edge_that_is_missed_is_made_when_the_next_slot_begins() {
 
 #[test]
 fn milliseconds_without_interrupts_shorten_no_pulse_nor_exceed_its_slot() {
-    in_both(|fidelity| {
-        let mut walk = Walk::stand(fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut walk = ReferenceRun::start_standing(fidelity);
         let mut rng = Rng::with_seed(5);
         for _ in 0..200 {
             walk.bench.run_for_frames(0);
@@ -223,7 +255,7 @@ fn milliseconds_without_interrupts_shorten_no_pulse_nor_exceed_its_slot() {
             for (pin, neutral) in pins.into_iter().zip(neutral_widths()) {
                 for pulse in walk.bench.uno.pulses(pin) {
                     // In the worst case, interrupts are enabled again in the middle of the next slot.
-                    let latest = neutral.max(SLOT + 300).max(neutral + length);
+                    let latest = neutral.max(SLOT_CYCLES + 300).max(neutral + length);
                     assert!(
                         (neutral..=latest).contains(&pulse.width),
                         "{pin}: {pulse:?} after {length} cycles"

@@ -6,7 +6,7 @@ use std::process::Command;
 use lizard_host_tests::{FirmwareBench, robot, root};
 use simulated_uno::{Fidelity, Image, SRAM_END, SRAM_START};
 
-use crate::{Status, awake};
+use crate::{Status, boot_standing};
 
 fn image() -> Image {
     FirmwareBench::image()
@@ -77,7 +77,7 @@ fn nothing_in_it_is_floating_point() {
 
 #[test]
 fn tables_and_messages_stay_in_flash() {
-    let bench = awake(Fidelity::DataSheet);
+    let bench = boot_standing(Fidelity::DataSheet);
     let ram: Vec<u8> = (SRAM_START..SRAM_END)
         .map(|at| bench.uno.peek(at))
         .collect();
@@ -116,7 +116,7 @@ fn tables_and_messages_stay_in_flash() {
 
 #[test]
 fn no_interrupt_is_used_that_would_come_before_the_servos() {
-    let mut bench = awake(Fidelity::DataSheet);
+    let mut bench = boot_standing(Fidelity::DataSheet);
     for line in ["walk", "help", "status", "rest", "stand"] {
         bench.say(line);
         bench.run_ms(300);

@@ -9,8 +9,8 @@ use lizard_host_tests::{FirmwareBench, root};
 use lizard_robot::{Robot, Travel};
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin};
 
-use crate::kept::{power_cycle, pulses_in, widths_now};
-use crate::{SECOND, Status, in_both};
+use crate::kept::{measure_widths, power_cycle, run_for_pulses};
+use crate::{FRAMES_PER_SECOND, Status, run_in_both_simulations};
 
 /// The input pins in docs/gaits.md.
 const BUTTON: Pin = Pin::a(1);
@@ -20,16 +20,16 @@ const NOSE: Pin = Pin::a(2);
 const DEBOUNCE_MS: u64 = 60;
 
 /// The largest allowed mean duration of a frame's computation, cycles.
-const TICK: u64 = 5_000;
+const MAX_MEAN_FRAME_CYCLES: u64 = 5_000;
 
 /// Returns the paper's robot with the patrol of docs/gaits.md.
 fn robot() -> &'static Robot {
-    static ROBOT: LazyLock<Robot> = LazyLock::new(|| with_pins("A1", "A2"));
+    static ROBOT: LazyLock<Robot> = LazyLock::new(|| patrol_robot_with_pins("A1", "A2"));
     &ROBOT
 }
 
 /// Returns the paper's robot with the patrol of docs/gaits.md, its button and obstacle switch at these pins.
-fn with_pins(button: &str, nose: &str) -> Robot {
+fn patrol_robot_with_pins(button: &str, nose: &str) -> Robot {
     let read = |file: &str| fs::read_to_string(root().join(file)).expect(file);
     let docs = read("docs/gaits.md");
     let blocks = docs
@@ -44,7 +44,7 @@ fn with_pins(button: &str, nose: &str) -> Robot {
 }
 
 /// Returns a board with this robot, a second after power-on, with both contacts open.
-fn awake(robot: &Robot, fidelity: Fidelity) -> FirmwareBench {
+fn boot_with_inputs(robot: &Robot, fidelity: Fidelity) -> FirmwareBench {
     let board = SimulatedBoard::boot(&FirmwareBench::elf(), fidelity, robot).expect("a banner");
     let mut bench = FirmwareBench::with_board(board);
     for pin in [BUTTON, NOSE] {
@@ -55,8 +55,8 @@ fn awake(robot: &Robot, fidelity: Fidelity) -> FirmwareBench {
 }
 
 /// Returns a robot whose patrol waits for the button.
-fn waiting(fidelity: Fidelity) -> FirmwareBench {
-    let mut bench = awake(robot(), fidelity);
+fn start_waiting_patrol(fidelity: Fidelity) -> FirmwareBench {
+    let mut bench = boot_with_inputs(robot(), fidelity);
     assert_eq!(bench.say("patrol"), "ok patrol");
     bench.run_ms(500);
     assert_eq!(notes(&mut bench, 0), ["# waiting for button"]);
@@ -64,8 +64,8 @@ fn waiting(fidelity: Fidelity) -> FirmwareBench {
 }
 
 /// Returns a robot whose patrol walks until its obstacle switch closes.
-fn walking(fidelity: Fidelity) -> FirmwareBench {
-    let mut bench = waiting(fidelity);
+fn start_walking_patrol(fidelity: Fidelity) -> FirmwareBench {
+    let mut bench = start_waiting_patrol(fidelity);
     press(&mut bench, BUTTON, 200);
     bench.run_ms(1_000);
     bench
@@ -99,14 +99,14 @@ fn travel(frames: &[Frame]) -> Travel {
 
 /// True if the servos stand still for a second.
 fn is_still(bench: &mut FirmwareBench) -> bool {
-    let frames = bench.run_for_frames(SECOND);
+    let frames = bench.run_for_frames(FRAMES_PER_SECOND);
     frames.iter().all(|frame| frame.widths == frames[0].widths)
 }
 
 #[test]
 fn after_power_on_and_a_press_the_robot_patrols_without_a_computer() {
-    in_both(|fidelity| {
-        let mut bench = awake(robot(), fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut bench = boot_with_inputs(robot(), fidelity);
         bench.say("boot patrol");
         bench.send("save");
         bench.run_ms(500);
@@ -124,14 +124,14 @@ fn after_power_on_and_a_press_the_robot_patrols_without_a_computer() {
         press(&mut bench, BUTTON, 150);
         // The move to the first pose ends within half a second.
         bench.run_ms(500);
-        let ahead = travel(&bench.run_for_frames(3 * SECOND));
+        let ahead = travel(&bench.run_for_frames(3 * FRAMES_PER_SECOND));
         assert!(ahead.forward > 90.0 && ahead.turn.abs() < 5.0, "{ahead:?}");
         for _ in 0..2 {
             let walked = bench.lines().len();
             bench.uno.set_contact(NOSE, true);
-            let mut frames = bench.run_for_frames(2 * SECOND);
+            let mut frames = bench.run_for_frames(2 * FRAMES_PER_SECOND);
             bench.uno.set_contact(NOSE, false);
-            frames.extend(bench.run_for_frames(6 * SECOND));
+            frames.extend(bench.run_for_frames(6 * FRAMES_PER_SECOND));
             let displacement = travel(&frames);
             assert!(displacement.turn > 75.0, "it has turned: {displacement:?}");
             assert!(notes(&mut bench, walked).is_empty());
@@ -139,7 +139,7 @@ fn after_power_on_and_a_press_the_robot_patrols_without_a_computer() {
             bench.run_ms(2_500);
             let printed = notes(&mut bench, walked);
             assert_eq!(printed, ["# waiting for nose"]);
-            let ahead = travel(&bench.run_for_frames(3 * SECOND));
+            let ahead = travel(&bench.run_for_frames(3 * FRAMES_PER_SECOND));
             assert!(ahead.forward > 90.0 && ahead.turn.abs() < 5.0, "{ahead:?}");
         }
         let status = Status::of(&mut bench);
@@ -149,8 +149,8 @@ fn after_power_on_and_a_press_the_robot_patrols_without_a_computer() {
 
 #[test]
 fn a_button_that_is_stuck_or_only_touched_starts_nothing() {
-    in_both(|fidelity| {
-        let mut bench = awake(robot(), fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut bench = boot_with_inputs(robot(), fidelity);
         bench.uno.set_contact(BUTTON, true);
         bench.say("patrol");
         bench.run_ms(5_000);
@@ -169,7 +169,7 @@ fn a_button_that_is_stuck_or_only_touched_starts_nothing() {
 
 #[test]
 fn reset_hang_rest_or_weak_supply_end_the_patrol_and_no_press_restarts_it() {
-    for begin in [waiting, walking] {
+    for begin in [start_waiting_patrol, start_walking_patrol] {
         type Event = fn(&mut FirmwareBench);
         let events: [(&str, Event); 5] = [
             ("stop", |bench| assert_eq!(bench.say("stop"), "ok stop")),
@@ -192,11 +192,11 @@ fn reset_hang_rest_or_weak_supply_end_the_patrol_and_no_press_restarts_it() {
         for (name, event) in events {
             let mut bench = begin(Fidelity::DataSheet);
             event(&mut bench);
-            let before = widths_now(&mut bench);
+            let before = measure_widths(&mut bench);
             let since = bench.lines().len();
             for pin in [BUTTON, NOSE] {
                 bench.uno.set_contact(pin, true);
-                let moved = pulses_in(&mut bench, 1_000);
+                let moved = run_for_pulses(&mut bench, 1_000);
                 bench.uno.set_contact(pin, false);
                 for (pulses, before) in moved.iter().zip(before) {
                     let is_still = pulses.iter().all(|pulse| pulse.width == before);
@@ -210,13 +210,13 @@ fn reset_hang_rest_or_weak_supply_end_the_patrol_and_no_press_restarts_it() {
 
 #[test]
 fn contacts_on_the_ports_of_the_servos_leave_every_pulse_as_it_is() {
-    in_both(|fidelity| {
-        let mut bench = awake(&with_pins("D8", "D4"), fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut bench = boot_with_inputs(&patrol_robot_with_pins("D8", "D4"), fidelity);
         bench.uno.set_contact(Pin::d(8), false);
         bench.uno.set_contact(Pin::d(4), false);
-        let neutral = widths_now(&mut bench);
+        let neutral = measure_widths(&mut bench);
         assert_eq!(bench.say("patrol"), "ok patrol");
-        for frame in bench.run_for_frames(5 * SECOND) {
+        for frame in bench.run_for_frames(5 * FRAMES_PER_SECOND) {
             assert_eq!(frame.widths(), neutral);
         }
         press(&mut bench, Pin::d(8), 100);
@@ -233,12 +233,15 @@ fn contacts_on_the_ports_of_the_servos_leave_every_pulse_as_it_is() {
 
 #[test]
 fn a_frame_of_a_patrol_takes_no_more_than_five_thousand_cycles_on_average() {
-    for begin in [waiting, walking] {
+    for begin in [start_waiting_patrol, start_walking_patrol] {
         let mut bench = begin(Fidelity::DataSheet);
         let calls = bench.time_calls("Control::frame", 4_000);
         let cycles = calls.iter().map(|call| call.leave - call.enter);
         let mean = cycles.sum::<u64>() / calls.len() as u64;
         println!("{mean} cycles a frame");
-        assert!(calls.len() >= 190 && mean <= TICK, "{mean}");
+        assert!(
+            calls.len() >= 190 && mean <= MAX_MEAN_FRAME_CYCLES,
+            "{mean}"
+        );
     }
 }

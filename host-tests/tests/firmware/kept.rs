@@ -9,23 +9,23 @@ use crate::robot;
 const LED: Pin = Pin::d(13);
 
 /// Cycles in a millisecond.
-pub const MS: u64 = simulated_uno::CYCLES_PER_MS;
+pub const CYCLES_PER_MS: u64 = simulated_uno::CYCLES_PER_MS;
 
 /// Runs for `ms` milliseconds and returns the pulses of A1 to A4 in that time.
-pub fn pulses_in(bench: &mut FirmwareBench, ms: u64) -> [Vec<Pulse>; 4] {
+pub fn run_for_pulses(bench: &mut FirmwareBench, ms: u64) -> [Vec<Pulse>; 4] {
     bench.uno.take_edges();
     bench.uno.run_ms(ms);
-    pulses(bench)
+    recorded_pulses(bench)
 }
 
 /// Returns the pulses of A1 to A4 in the recorded edges, which begin where the edges were last taken.
-pub fn pulses(bench: &FirmwareBench) -> [Vec<Pulse>; 4] {
+pub fn recorded_pulses(bench: &FirmwareBench) -> [Vec<Pulse>; 4] {
     bench.pins().map(|pin| bench.uno.pulses(pin))
 }
 
 /// Runs for 50 ms and returns the last pulse width of each servo, cycles; 0 for a servo without a pulse.
-pub fn widths_now(bench: &mut FirmwareBench) -> [u64; 4] {
-    pulses_in(bench, 50).map(|pulses| pulses.last().map_or(0, |pulse| pulse.width))
+pub fn measure_widths(bench: &mut FirmwareBench) -> [u64; 4] {
+    run_for_pulses(bench, 50).map(|pulses| pulses.last().map_or(0, |pulse| pulse.width))
 }
 
 /// Switches the power off and on, discards the edges recorded so far, and waits for the banner.
@@ -48,7 +48,7 @@ pub fn power_cycle(bench: &mut FirmwareBench) {
 }
 
 /// Returns the lines of the settings that `cal` prints.
-pub fn calibration(bench: &mut FirmwareBench) -> Vec<String> {
+pub fn read_calibration(bench: &mut FirmwareBench) -> Vec<String> {
     let (lines, answer) = bench.ask("cal");
     assert_eq!(answer, "ok cal");
     let is_set = |line: &String| {
@@ -105,7 +105,7 @@ pub fn assert_no_leap_at(pulses: &[Vec<Pulse>; 4], gains: [f64; 4]) {
 }
 
 /// Runs for `seconds` seconds and returns the number of LED flashes between each pause and the next.
-pub fn flashes(bench: &mut FirmwareBench, seconds: u64) -> Vec<usize> {
+pub fn count_flashes(bench: &mut FirmwareBench, seconds: u64) -> Vec<usize> {
     bench.uno.take_edges();
     bench.uno.run_ms(1000 * seconds);
     let edges = bench.uno.edges();
@@ -114,7 +114,7 @@ pub fn flashes(bench: &mut FirmwareBench, seconds: u64) -> Vec<usize> {
     let mut patterns = Vec::new();
     let mut count = None;
     for pair in edges.windows(2) {
-        let ms = (pair[1].cycle - pair[0].cycle) / MS;
+        let ms = (pair[1].cycle - pair[0].cycle) / CYCLES_PER_MS;
         match (pair[0].high, ms) {
             (true, 150..=170) => count = count.map(|n| n + 1),
             (false, 150..=170) => {}

@@ -4,13 +4,13 @@ use lizard_host::sim::frame::FRAME;
 use lizard_host_tests::FirmwareBench;
 use simulated_uno::{Edge, Pin};
 
-use crate::in_both;
+use crate::run_in_both_simulations;
 
 const LED: Pin = Pin::d(13);
 
 #[test]
 fn the_led_is_lit_at_power_on_and_beats_every_64_hundredths_of_a_second() {
-    in_both(|fidelity| {
+    run_in_both_simulations(|fidelity| {
         let mut bench = FirmwareBench::power_on(fidelity);
         bench.run_ms(5000);
         let edges = bench.uno.edges();

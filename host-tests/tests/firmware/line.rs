@@ -3,7 +3,7 @@
 use lizard_host_tests::FirmwareBench;
 use simulated_uno::Fidelity;
 
-use crate::in_both;
+use crate::run_in_both_simulations;
 
 /// Registers of the USART, data sheet 20.11.
 const UCSR0A: u16 = 0xc0;
@@ -12,7 +12,7 @@ const UBRR0: [u16; 2] = [0xc4, 0xc5];
 
 #[test]
 fn the_line_is_set_to_eight_data_bits_no_parity_and_one_stop_bit() {
-    in_both(|fidelity| {
+    run_in_both_simulations(|fidelity| {
         let bench = FirmwareBench::boot_with(fidelity);
         // Asynchronous 00, no parity 00, one stop bit 0, eight data bits 11.
         assert_eq!(bench.uno.peek(UCSR0C), 0b0000_0110);
@@ -21,7 +21,7 @@ fn the_line_is_set_to_eight_data_bits_no_parity_and_one_stop_bit() {
 
 #[test]
 fn the_line_runs_at_the_nearest_rate_to_115_200_baud_that_the_clock_allows() {
-    in_both(|fidelity| {
+    run_in_both_simulations(|fidelity| {
         let bench = FirmwareBench::boot_with(fidelity);
         let divisor = u16::from_le_bytes(UBRR0.map(|register| bench.uno.peek(register)));
         let double = bench.uno.peek(UCSR0A) & 2 != 0;

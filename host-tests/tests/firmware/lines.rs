@@ -6,7 +6,7 @@ use lizard_core::console::word::Word;
 use lizard_host_tests::robot;
 
 /// Returns a random number with at most two decimals, from `min` to `max` or a fifth of the range beyond.
-fn number(rng: &mut Rng, min: f64, max: f64) -> String {
+fn random_number(rng: &mut Rng, min: f64, max: f64) -> String {
     let beyond = (max - min) * 0.2;
     let number = min - beyond + rng.f64() * (max - min + 2.0 * beyond);
     match rng.u8(..4) {
@@ -17,14 +17,14 @@ fn number(rng: &mut Rng, min: f64, max: f64) -> String {
 }
 
 /// Returns a random angle near the neutral angle of a servo, deg.
-fn angle(rng: &mut Rng, servo: usize) -> String {
+fn random_angle(rng: &mut Rng, servo: usize) -> String {
     let neutral = robot().servos()[servo].neutral;
     let within = [5.0, 30.0, 100.0][rng.usize(..3)];
-    number(rng, neutral - within, neutral + within)
+    random_number(rng, neutral - within, neutral + within)
 }
 
 /// Returns a random line that is valid, except that its numbers may be out of range.
-fn line(rng: &mut Rng) -> String {
+fn random_line(rng: &mut Rng) -> String {
     let gait = |rng: &mut Rng| {
         let gait = &robot().gaits()[rng.usize(..robot().gaits().len())];
         gait.name().replace('-', " ")
@@ -36,9 +36,9 @@ fn line(rng: &mut Rng) -> String {
         5 => "stop".into(),
         6 => "rest".into(),
         7 => "stand".into(),
-        8 => format!("speed {}", number(rng, 10.0, 100.0)),
+        8 => format!("speed {}", random_number(rng, 10.0, 100.0)),
         9 | 10 => {
-            let angles: Vec<String> = (0..4).map(|servo| angle(rng, servo)).collect();
+            let angles: Vec<String> = (0..4).map(|servo| random_angle(rng, servo)).collect();
             format!("pose {}", angles.join(" "))
         }
         11 => format!("speed {}", rng.u8(..)),
@@ -49,13 +49,13 @@ fn line(rng: &mut Rng) -> String {
             1 => "cal".into(),
             _ => "status".into(),
         },
-        14 | 15 => format!("trim {servo} {}", number(rng, -20.0, 20.0)),
+        14 | 15 => format!("trim {servo} {}", random_number(rng, -20.0, 20.0)),
         16 => {
-            let min = angle(rng, index);
-            format!("limit {servo} {min} {}", angle(rng, index))
+            let min = random_angle(rng, index);
+            format!("limit {servo} {min} {}", random_angle(rng, index))
         }
         17 => format!("dir {servo} {}", ['+', '-'][rng.usize(..2)]),
-        18 => format!("scale {servo} {}", number(rng, 5.0, 20.0)),
+        18 => format!("scale {servo} {}", random_number(rng, 5.0, 20.0)),
         19 => rng.choice(Word::ALL).expect("a word").example().into(),
         20 if rng.u8(..4) == 0 => "save".into(),
         20 | 21 => ["load", "factory"][rng.usize(..2)].into(),
@@ -63,13 +63,13 @@ fn line(rng: &mut Rng) -> String {
             "boot {}",
             if rng.bool() { gait(rng) } else { "rest".into() }
         ),
-        _ => format!("deadman {}", number(rng, 0.0, 60_000.0)),
+        _ => format!("deadman {}", random_number(rng, 0.0, 60_000.0)),
     }
 }
 
 /// Returns a random nearly valid line without its line end.
-pub fn mutated(rng: &mut Rng) -> Vec<u8> {
-    let mut bytes = line(rng).into_bytes();
+pub fn nearly_valid_line(rng: &mut Rng) -> Vec<u8> {
+    let mut bytes = random_line(rng).into_bytes();
     for _ in 0..[0, 0, 0, 1, 1, 2, 3][rng.usize(..7)] {
         let offset = rng.usize(..=bytes.len());
         match rng.u8(..5) {

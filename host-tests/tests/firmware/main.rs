@@ -51,7 +51,7 @@ mod walk;
 mod watchdog;
 
 /// Frames in a second.
-const SECOND: u64 = 50;
+const FRAMES_PER_SECOND: u64 = 50;
 
 /// Removes from a line the values that the core on the host cannot know. A status is written in three
 /// parts, each in the frame in which the serial buffer has space for it, so the values of a moving robot
@@ -67,7 +67,7 @@ fn comparable_line(line: &str, fidelity: Fidelity) -> String {
 }
 
 /// Runs a test on stock simavr and on corrected simavr in parallel.
-fn in_both(test: impl Fn(Fidelity) + Sync) {
+fn run_in_both_simulations(test: impl Fn(Fidelity) + Sync) {
     for_each(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
         test(*fidelity)
     });
@@ -87,15 +87,15 @@ fn for_each<T: Sync + std::fmt::Debug>(cases: &[T], test: impl Fn(&T) + Sync) {
 }
 
 /// Boots the board, sends the command `line` and returns the board one second later.
-fn robot_after(line: &str, fidelity: Fidelity) -> FirmwareBench {
-    let mut bench = awake(fidelity);
+fn boot_and_command(line: &str, fidelity: Fidelity) -> FirmwareBench {
+    let mut bench = boot_standing(fidelity);
     assert_eq!(bench.say(line), format!("ok {line}"));
     bench.run_ms(1000);
     bench
 }
 
 /// Boots the board and returns it one second later, when the robot stands.
-fn awake(fidelity: Fidelity) -> FirmwareBench {
+fn boot_standing(fidelity: Fidelity) -> FirmwareBench {
     let mut bench = FirmwareBench::boot_with(fidelity);
     bench.run_ms(1000);
     bench
@@ -104,7 +104,7 @@ fn awake(fidelity: Fidelity) -> FirmwareBench {
 /// Returns the command for the robot's first gait that moves. Every robot to be tested needs such a gait: without
 /// it, most of these tests would see a robot that only stands.
 fn first_moving_gait() -> String {
-    let moving = tour::moving(robot());
+    let moving = tour::moving_gaits(robot());
     let first = moving
         .first()
         .expect("a robot to be tested has a gait that moves");
@@ -112,13 +112,13 @@ fn first_moving_gait() -> String {
 }
 
 /// Returns the commands for all gaits.
-fn gaits() -> Vec<String> {
+fn gait_commands() -> Vec<String> {
     let names = robot().gaits().iter().map(|gait| gait.name());
     names.map(|name| name.replace('-', " ")).collect()
 }
 
 /// Returns the command for a pose with these angles from neutral, deg.
-fn pose_at(sweeps: [f64; 4]) -> String {
+fn pose_command(sweeps: [f64; 4]) -> String {
     let servos = robot().servos();
     let angles: Vec<String> = (0..4)
         .map(|i| format!("{:.2}", (servos[i].neutral + sweeps[i]).rem_euclid(360.0)))
@@ -174,12 +174,12 @@ impl Status {
     }
 
     fn pose(&self) -> [f64; 4] {
-        angles(self.text("pose"))
+        parse_angles(self.text("pose"))
     }
 }
 
 /// Parses four comma-separated angles, deg, as the console writes them.
-fn angles(list: &str) -> [f64; 4] {
+fn parse_angles(list: &str) -> [f64; 4] {
     let angles: Vec<f64> = list
         .split(',')
         .map(|angle| angle.parse().expect("a number"))

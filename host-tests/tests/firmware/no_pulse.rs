@@ -3,16 +3,16 @@
 
 use lizard_host::sim::frame::FRAME;
 
-use crate::walk::{SLOT, Walk};
-use crate::{Status, in_both, neutral_widths};
+use crate::walk::{ReferenceRun, SLOT_CYCLES};
+use crate::{Status, neutral_widths, run_in_both_simulations};
 
 /// Widths that fit into a slot, cycles.
 const WIDTHS: std::ops::RangeInclusive<u16> = 1_000..=63_000;
 
 #[test]
 fn a_width_that_a_slot_has_no_room_for_gives_no_pulse() {
-    in_both(|fidelity| {
-        let mut walk = Walk::stand(fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut walk = ReferenceRun::start_standing(fidelity);
         // `FRAMES` holds two sets of four widths, two bytes each. A3's width is the third of each set.
         let frames = walk.address("pulses::FRAMES");
         let a3 = [frames + 4, frames + 12];
@@ -30,7 +30,7 @@ fn a_width_that_a_slot_has_no_room_for_gives_no_pulse() {
                 assert_eq!(before, u16::from(neutral), "where A3's width is");
                 walk.bench.uno.poke(address, u16::to_le_bytes(width)[n]);
             }
-            walk.run_to(start + FRAME - SLOT / 2);
+            walk.run_to(start + FRAME - SLOT_CYCLES / 2);
             let (frame, asked) = walk.frames_since(start)[0];
             let expected = WIDTHS.contains(&width).then_some(u64::from(width));
             assert_eq!(frame.widths[2], expected, "{width}");
@@ -39,16 +39,16 @@ fn a_width_that_a_slot_has_no_room_for_gives_no_pulse() {
             }
             walk.bench.run_ms(40);
         }
-        assert_eq!(walk.late(), 0);
+        assert_eq!(walk.late_edge_count(), 0);
     });
 }
 
 #[test]
 fn after_the_switch_only_the_pulse_under_way_ends_and_the_tick_goes_on() {
-    in_both(|fidelity| {
+    run_in_both_simulations(|fidelity| {
         // Moments in every part of a frame: before, in and after each pulse.
         for n in 0..40 {
-            let mut walk = Walk::stand(fidelity);
+            let mut walk = ReferenceRun::start_standing(fidelity);
             let start = walk.next_frame();
             walk.run_to(start + n * FRAME / 40 + 777);
             let switched = walk.bench.uno.cycle();

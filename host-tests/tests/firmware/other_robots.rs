@@ -11,7 +11,7 @@ use lizard_host_tests::{FirmwareBench, rng};
 use lizard_robot::Robot;
 use simulated_uno::Fidelity;
 
-use crate::{SECOND, for_each};
+use crate::{FRAMES_PER_SECOND, for_each};
 
 /// Lines that move no servo, each sent at the full rate of the serial line.
 const FLOODS: [&str; 5] = ["status\n", "help\n", "cal\n", "?\r", "x"];
@@ -33,13 +33,17 @@ fn assert_in_time(robot: &Robot, gait: &str, flood: &str, what: &str) {
     bench.say(&gait.replace('-', " "));
     let received = bench.uno.received_by_uno().len();
     bench.uno.flood(flood.as_bytes());
-    let sent = bench.run_for_frames(2 * SECOND);
+    let sent = bench.run_for_frames(2 * FRAMES_PER_SECOND);
     let before = ((sent[0].start - first) / FRAME) as usize;
     let received = &bench.uno.received_by_uno()[..received];
     let asked = core_run::play(*robot.firmware(), received, first, before + sent.len());
     for (frame, asked) in sent.iter().zip(&asked.widths[before..]) {
         let asked = asked.map(u64::from);
-        assert_eq!(frame.all(), Some(asked), "{what}, {flood:?}: {frame:?}");
+        assert_eq!(
+            frame.all_widths(),
+            Some(asked),
+            "{what}, {flood:?}: {frame:?}"
+        );
     }
 }
 
@@ -56,7 +60,7 @@ fn no_frame_is_late_for_any_robot_in_any_gait_under_any_flood() {
                 _ => {}
             }
             let what = format!("robot {n}");
-            let gaits = tour::moving(&robot);
+            let gaits = tour::moving_gaits(&robot);
             for flood in FLOODS {
                 let gait = gaits[rng.usize(..gaits.len())];
                 assert_in_time(&robot, gait, flood, &what);
@@ -68,7 +72,7 @@ fn no_frame_is_late_for_any_robot_in_any_gait_under_any_flood() {
 #[test]
 fn no_step_of_main_delays_a_frame_too_long_however_many_gaits_there_are() {
     /// Cycles of the longest command, `factory`, not counting the search for a gait.
-    const OTHERS: usize = 34_000;
+    const MAX_OTHER_COMMAND_CYCLES: usize = 34_000;
     let (text, robot) = random_robot(&mut rng(2_000));
     let lengths = [10, 24, MAX_NAME_BYTES];
     for robot in lengths
@@ -83,12 +87,12 @@ fn no_step_of_main_delays_a_frame_too_long_however_many_gaits_there_are() {
             robot.gaits().len()
         );
         assert!(
-            cycles as usize <= largest.max(OTHERS),
+            cycles as usize <= largest.max(MAX_OTHER_COMMAND_CYCLES),
             "{cycles} of {largest}"
         );
         // Where the search is the longest step, the bound is less than twice the measured time.
         assert!(
-            largest < OTHERS || cycles as usize > largest / 2,
+            largest < MAX_OTHER_COMMAND_CYCLES || cycles as usize > largest / 2,
             "{cycles} of {largest}"
         );
     }

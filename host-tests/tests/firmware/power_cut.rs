@@ -1,45 +1,45 @@
 //! Tests of the saved settings: with power cuts during a save, at every byte and with every torn value of that
 //! byte, and with bits that flip over the years.
 
-use lizard_core::memory::copies::{self, Outcome};
+use lizard_core::memory::copies::{self, SavedState};
 use lizard_core::memory::settings::Settings;
 use lizard_core::virtual_board::Eeprom;
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::{EEPROM_SIZE, EepromOperation, Fidelity, PowerCut};
 
-use crate::awake;
-use crate::kept::{calibration, power_cycle};
+use crate::boot_standing;
+use crate::kept::{power_cycle, read_calibration};
 
 /// Loads the settings of an EEPROM as the core does.
-fn load(contents: &[u8; EEPROM_SIZE]) -> (Settings, Outcome) {
+fn load(contents: &[u8; EEPROM_SIZE]) -> (Settings, SavedState) {
     let mut settings = Settings::of(robot().firmware());
     let outcome = copies::load(robot().firmware(), &Eeprom::with(*contents), &mut settings);
-    settings.set_turn(0);
+    settings.set_save_number(0);
     (settings, outcome)
 }
 
 /// A board whose settings were saved twice and then changed without saving.
-struct Saved {
+struct UnsavedBoard {
     bench: FirmwareBench,
-    before: [u8; EEPROM_SIZE],
+    saved_eeprom: [u8; EEPROM_SIZE],
     /// The output of `cal` for the saved settings and for the changed ones.
     calibrations: [Vec<String>; 2],
 }
 
-impl Saved {
+impl UnsavedBoard {
     fn new() -> Self {
-        let mut bench = awake(Fidelity::DataSheet);
+        let mut bench = boot_standing(Fidelity::DataSheet);
         for trim in ["1 0.5", "2 -0.75"] {
             bench.say(&format!("trim {trim}"));
             assert_eq!(bench.say("save"), "ok save");
         }
-        let saved = calibration(&mut bench);
+        let saved = read_calibration(&mut bench);
         for line in ["trim 1 1.25", "trim 3 -1", "trim 4 2", "deadman 4321"] {
             assert_eq!(bench.say(line), format!("ok {line}"));
         }
-        let others = calibration(&mut bench);
+        let others = read_calibration(&mut bench);
         Self {
-            before: bench.uno.eeprom(),
+            saved_eeprom: bench.uno.eeprom(),
             calibrations: [saved, others],
             bench,
         }
@@ -56,14 +56,14 @@ impl Saved {
     fn power_on_with(&mut self, contents: &[u8; EEPROM_SIZE]) -> Vec<String> {
         self.bench.uno.set_eeprom(contents);
         power_cycle(&mut self.bench);
-        calibration(&mut self.bench)
+        read_calibration(&mut self.bench)
     }
 }
 
 #[test]
 fn a_power_cut_at_any_byte_of_a_save_torn_in_any_way_leaves_the_old_or_the_new() {
-    let mut saved = Saved::new();
-    let mut contents = saved.before;
+    let mut saved = UnsavedBoard::new();
+    let mut contents = saved.saved_eeprom;
     let operations = saved.save();
     let after = saved.bench.uno.eeprom();
     let [old, new] = [contents, after].map(|contents| load(&contents).0);
@@ -100,8 +100,8 @@ fn a_power_cut_at_any_byte_of_a_save_torn_in_any_way_leaves_the_old_or_the_new()
 
 #[test]
 fn a_power_cut_in_any_operation_of_a_running_save_leaves_the_old_or_the_new() {
-    let mut saved = Saved::new();
-    let before = saved.before;
+    let mut saved = UnsavedBoard::new();
+    let before = saved.saved_eeprom;
     let count = saved.save().len() as u64;
     let after = saved.bench.uno.eeprom();
     let mut found = [0, 0];
@@ -122,7 +122,7 @@ fn a_power_cut_in_any_operation_of_a_running_save_leaves_the_old_or_the_new() {
             saved.bench.uno.run_ms(400);
             assert_eq!(*saved.bench.uno.state(), simulated_uno::State::Off);
             power_cycle(&mut saved.bench);
-            let calibration = calibration(&mut saved.bench);
+            let calibration = read_calibration(&mut saved.bench);
             let which = saved.calibrations.iter().position(|c| *c == calibration);
             found[which.unwrap_or_else(|| panic!("{cut:?} {ones:02x}: {calibration:?}"))] += 1;
         }
@@ -133,12 +133,12 @@ fn a_power_cut_in_any_operation_of_a_running_save_leaves_the_old_or_the_new() {
 
 #[test]
 fn any_flipped_bit_gives_the_settings_the_other_copy_or_the_defaults() {
-    let mut saved = Saved::new();
+    let mut saved = UnsavedBoard::new();
     saved.save();
     let contents = saved.bench.uno.eeprom();
-    let [latest, older] = [contents, saved.before].map(|contents| load(&contents).0);
+    let [latest, older] = [contents, saved.saved_eeprom].map(|contents| load(&contents).0);
     let mut defaults = Settings::of(robot().firmware());
-    defaults.set_turn(0);
+    defaults.set_save_number(0);
     let mut found = [0, 0, 0];
     for bit in 0..8 * EEPROM_SIZE {
         let mut flipped = contents;

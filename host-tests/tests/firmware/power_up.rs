@@ -4,8 +4,8 @@
 use lizard_host_tests::FirmwareBench;
 use simulated_uno::{CYCLES_PER_MS, Edge, Fidelity, Uno};
 
-use crate::in_both;
 use crate::pulses::servo_edges;
+use crate::run_in_both_simulations;
 
 /// Registers, by data address: data sheet, 30.
 const TCCR1A: u16 = 0x80;
@@ -30,7 +30,7 @@ fn edges_after(left: &[(u16, u8)], fidelity: Fidelity) -> Vec<Edge> {
 
 #[test]
 fn a_timer_that_was_left_running_changes_no_edge() {
-    in_both(|fidelity| {
+    run_in_both_simulations(|fidelity| {
         let cold = edges_after(&[], fidelity);
         assert!(cold.len() > 100);
         for clock in 1..=5 {
@@ -47,7 +47,7 @@ fn a_timer_that_was_left_running_changes_no_edge() {
 fn the_timer_stands_still_while_it_is_set_up_and_starts_at_zero() {
     // The simulation restarts the count at every change of the mode, but the chip goes on
     // counting. So the test reads the registers.
-    in_both(|fidelity| {
+    run_in_both_simulations(|fidelity| {
         let mut bench = FirmwareBench::power_on(fidelity);
         for (register, value) in [(TCCR1B, 1), (TCNT1 + 1, 0x12), (TCNT1, 0x34)] {
             bench.uno.poke(register, value);
@@ -77,7 +77,7 @@ fn main_sleeps_in_the_mode_in_which_timer_and_line_run_on() {
 
 #[test]
 fn pins_that_were_left_high_go_low_and_make_no_pulse() {
-    in_both(|fidelity| {
+    run_in_both_simulations(|fidelity| {
         let cold = edges_after(&[], fidelity);
         let ports = PORTS.map(|port| (port, 0xff));
         let left = edges_after(&ports, fidelity);

@@ -5,7 +5,10 @@ use lizard_host::sim::frame::{FRAME, Frame};
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::{Edge, Fidelity, most_pins_high};
 
-use crate::{SECOND, Status, awake, end_flood, first_moving_gait, for_each, in_both};
+use crate::{
+    FRAMES_PER_SECOND, Status, boot_standing, end_flood, first_moving_gait, for_each,
+    run_in_both_simulations,
+};
 
 /// Returns the recorded edges of the servos' pins.
 pub fn servo_edges(bench: &FirmwareBench) -> Vec<Edge> {
@@ -64,14 +67,14 @@ fn every_width_is_the_one_that_was_asked_for() {
             // The line is sent while the firmware writes nothing. If the line ends so shortly before a tick that
             // main may read it before or after the tick, a new bench sends it a millisecond later.
             let asked_after = |ms| {
-                let mut bench = awake(*fidelity);
+                let mut bench = boot_standing(*fidelity);
                 let first = first_pulse(&bench);
                 bench.run_ms(ms);
                 bench.say(&gait.name().replace('-', " "));
                 (bench, first)
             };
             let is_decided = |(bench, first): &(FirmwareBench, u64)| {
-                core_run::undecided(&bench.uno.received_by_uno(), *first)
+                core_run::undecided_lines(&bench.uno.received_by_uno(), *first)
                     .next()
                     .is_none()
             };
@@ -79,7 +82,7 @@ fn every_width_is_the_one_that_was_asked_for() {
                 .map(asked_after)
                 .find(is_decided)
                 .expect("a time");
-            let frames = bench.run_for_frames(6 * SECOND);
+            let frames = bench.run_for_frames(6 * FRAMES_PER_SECOND);
             assert_in_step(&bench, &frames);
             let received = bench.uno.received_by_uno().len();
             for (frame, asked) in frames
@@ -96,16 +99,16 @@ fn every_width_is_the_one_that_was_asked_for() {
 fn a_saturated_line_both_ways_moves_no_edge() {
     // None of these can become a command that moves, however many bytes are lost.
     const FLOODS: [&str; 4] = ["status\n", "help\n", "?\r", "x"];
-    in_both(|fidelity| {
+    run_in_both_simulations(|fidelity| {
         for flood in FLOODS {
-            let mut bench = awake(fidelity);
+            let mut bench = boot_standing(fidelity);
             let first = first_pulse(&bench);
             bench.say("watch 1");
             bench.say(&first_moving_gait());
             let received = bench.uno.received_by_uno().len();
             bench.uno.flood(flood.as_bytes());
             let sent = bench.bytes().len();
-            let frames = bench.run_for_frames(10 * SECOND);
+            let frames = bench.run_for_frames(10 * FRAMES_PER_SECOND);
             let sent = bench.bytes().len() - sent;
             assert_in_step(&bench, &frames);
             for (frame, asked) in frames
@@ -119,12 +122,12 @@ fn a_saturated_line_both_ways_moves_no_edge() {
                 .filter(|pair| pair[0].widths != pair[1].widths);
             let varies = robot().gaits().iter().any(|gait| gait.moves());
             assert!(
-                !varies || changed.count() as u64 > 2 * SECOND,
+                !varies || changed.count() as u64 > 2 * FRAMES_PER_SECOND,
                 "the widths do not vary"
             );
             // Both directions are saturated: 11 520 bytes a second come in, and the answers fill the
             // other direction, unless the flood is a single overlong line.
-            let seconds = frames.len() as f64 / SECOND as f64;
+            let seconds = frames.len() as f64 / FRAMES_PER_SECOND as f64;
             let received_rate = (bench.uno.received_by_uno().len() - received) as f64 / seconds;
             assert!(
                 received_rate > 11_000.0 || fidelity == Fidelity::Stock && received_rate > 10_000.0,
@@ -145,8 +148,8 @@ fn a_saturated_line_both_ways_moves_no_edge() {
 
 #[test]
 fn frames_are_counted_right_through_a_flood() {
-    in_both(|fidelity| {
-        let mut bench = awake(fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut bench = boot_standing(fidelity);
         bench.run_for_frames(0);
         let (cycle, before) = (bench.uno.cycle(), Status::of(&mut bench));
         bench.uno.flood(b"status\nhelp\n");

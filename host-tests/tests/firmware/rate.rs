@@ -5,7 +5,7 @@ use lizard_host_tests::FirmwareBench;
 use simulated_uno::{CYCLES_PER_MS, Fidelity};
 
 use crate::pulses::servo_edges;
-use crate::{Status, awake, first_moving_gait, in_both, robot_after};
+use crate::{Status, boot_and_command, boot_standing, first_moving_gait, run_in_both_simulations};
 
 /// The rates, baud, each with the number of `status` lines that are sent from a cold start until one is
 /// answered. One line is lost at each rate that the robot tries before, and one more because the robot has heard
@@ -30,7 +30,7 @@ pub fn ask_until_answered(bench: &mut FirmwareBench) -> u32 {
 
 /// Returns a robot that has found this rate.
 fn robot_at(baud: f64) -> FirmwareBench {
-    let mut bench = awake(Fidelity::DataSheet);
+    let mut bench = boot_standing(Fidelity::DataSheet);
     bench.uno.set_baud(baud);
     ask_until_answered(&mut bench);
     assert!((bench.uno.chip_baud() / baud - 1.0).abs() < 0.022, "{baud}");
@@ -43,7 +43,7 @@ fn a_robot_answers_at_each_rate_after_a_few_lines_and_then_to_each() {
     for (baud, lines) in RATES {
         // Slow and fast senders.
         for error in [0.985, 1.0, 1.02] {
-            let mut bench = awake(Fidelity::DataSheet);
+            let mut bench = boot_standing(Fidelity::DataSheet);
             bench.uno.set_baud(baud * error);
             assert_eq!(ask_until_answered(&mut bench), lines, "{baud} baud");
             assert_eq!(ask_until_answered(&mut bench), 1);
@@ -53,7 +53,7 @@ fn a_robot_answers_at_each_rate_after_a_few_lines_and_then_to_each() {
 
 #[test]
 fn a_guessed_rate_does_not_obey_what_a_pose_at_another_rate_looks_like() {
-    let mut bench = awake(Fidelity::DataSheet);
+    let mut bench = boot_standing(Fidelity::DataSheet);
     bench.uno.set_baud(9_600.0);
     let garbled = "err 1 the line came garbled, send it again";
     let mut answers = Vec::new();
@@ -89,11 +89,11 @@ fn the_module_may_be_exchanged_for_one_of_any_other_rate() {
 fn opening_the_port_on_usb_returns_to_its_rate_and_a_hang_does_not() {
     for (baud, _) in RATES {
         let mut bench = robot_at(baud);
-        let resets = bench.uno.resets();
+        let resets = bench.uno.watchdog_resets();
         bench.uno.stall_main(1_000 * CYCLES_PER_MS);
-        let hangs = bench
-            .uno
-            .run_until(400 * CYCLES_PER_MS, 1_000, |uno| uno.resets() > resets);
+        let hangs = bench.uno.run_until(400 * CYCLES_PER_MS, 1_000, |uno| {
+            uno.watchdog_resets() > resets
+        });
         assert!(hangs, "no reset");
         bench.uno.stall_main(0);
         bench.run_ms(1_000);
@@ -118,10 +118,10 @@ fn opening_the_port_on_usb_returns_to_its_rate_and_a_hang_does_not() {
 
 #[test]
 fn no_pulse_moves_by_a_cycle_while_the_rate_is_sought() {
-    in_both(|fidelity| {
+    run_in_both_simulations(|fidelity| {
         let gait = first_moving_gait();
         let [undisturbed, sought] = [false, true].map(|is_sought| {
-            let mut bench = robot_after(&gait, fidelity);
+            let mut bench = boot_and_command(&gait, fidelity);
             bench.uno.take_edges();
             let mut rng = Rng::with_seed(3);
             let mut rates = std::collections::BTreeSet::new();
@@ -145,7 +145,7 @@ fn no_pulse_moves_by_a_cycle_while_the_rate_is_sought() {
 
 #[test]
 fn noise_is_never_obeyed_and_the_robot_is_found_again() {
-    let mut bench = awake(Fidelity::DataSheet);
+    let mut bench = boot_standing(Fidelity::DataSheet);
     let printed = bench.lines().len();
     let mut rng = Rng::with_seed(5);
     for _ in 0..400 {

@@ -12,7 +12,7 @@ use lizard_host_tests::{FirmwareBench, root};
 use lizard_robot::Robot;
 use simulated_uno::{CYCLES_PER_MS, Edge, Fidelity, State, Uno};
 
-use crate::{SECOND, for_each};
+use crate::{FRAMES_PER_SECOND, for_each};
 
 /// A random number generator whose numbers no update of a library changes: xorshift64*, Vigna 2016.
 struct Random(u64);
@@ -27,7 +27,7 @@ impl Random {
     }
 
     /// Returns a random number from `min` to `max` hundredths, written with two decimals as the console takes it.
-    fn hundredths(&mut self, min: i64, max: i64) -> String {
+    fn random_decimal(&mut self, min: i64, max: i64) -> String {
         let value = min + self.random_below((max - min) as u64 + 1) as i64;
         let sign = if value < 0 { "-" } else { "" };
         let size = value.unsigned_abs();
@@ -36,13 +36,13 @@ impl Random {
 }
 
 /// Returns a random command, a gait in almost half of the cases.
-fn command(random: &mut Random, robot: &Robot) -> String {
+fn random_command(random: &mut Random, robot: &Robot) -> String {
     let servo = 1 + random.random_below(4);
     let neutral = |index: usize| (robot.servos()[index].neutral * 100.0).round() as i64;
     let near = |random: &mut Random, reach: i64| {
         let angle = |index: usize| {
             let angle = neutral(index);
-            random.hundredths(angle - reach, angle + reach)
+            random.random_decimal(angle - reach, angle + reach)
         };
         let angles: Vec<String> = (0..4).map(angle).collect();
         format!("pose {}", angles.join(" "))
@@ -60,14 +60,14 @@ fn command(random: &mut Random, robot: &Robot) -> String {
         20 | 21 => "stand".into(),
         22 => "center".into(),
         23 | 24 => format!("speed {}", 10 + random.random_below(91)),
-        25 => format!("trim {servo} {}", random.hundredths(-2_000, 2_000)),
+        25 => format!("trim {servo} {}", random.random_decimal(-2_000, 2_000)),
         26 => {
             let neutral = neutral(servo as usize - 1);
-            let min = random.hundredths(neutral - 9_000, neutral - 1_000);
-            let max = random.hundredths(neutral + 1_000, neutral + 9_000);
+            let min = random.random_decimal(neutral - 9_000, neutral - 1_000);
+            let max = random.random_decimal(neutral + 1_000, neutral + 9_000);
             format!("limit {servo} {min} {max}")
         }
-        27 => format!("scale {servo} {}", random.hundredths(500, 2_000)),
+        27 => format!("scale {servo} {}", random.random_decimal(500, 2_000)),
         28 => ["save", "load", "factory"][random.random_below(3) as usize].into(),
         29 => format!("deadman {}", 200 * random.random_below(10)),
         30 => "status".into(),
@@ -77,7 +77,7 @@ fn command(random: &mut Random, robot: &Robot) -> String {
 
 /// True if the robot fits beside the firmware. Without the project's own linker step, the code is larger, and some
 /// robots do not fit.
-fn has_room(name: &str) -> bool {
+fn fits_beside_firmware(name: &str) -> bool {
     let is_plain = option_env!("LIZARD_PLAIN_LINK") == Some("1");
     let robot = Robot::load(root().join(format!("robots/{name}.toml")));
     !(is_plain && robot.is_err_and(|error| error.to_string().contains("bytes")))
@@ -85,7 +85,7 @@ fn has_room(name: &str) -> bool {
 
 /// Runs a robot for ten minutes and returns the digest of all servo edges and their number.
 fn digest(name: &str) -> (u64, u64) {
-    let frames = 600 * SECOND;
+    let frames = 600 * FRAMES_PER_SECOND;
     let robot = Robot::load(root().join(format!("robots/{name}.toml")));
     let robot = robot.unwrap_or_else(|error| panic!("{error}"));
     let image = with_robot(&FirmwareBench::elf(), &robot);
@@ -119,7 +119,7 @@ fn digest(name: &str) -> (u64, u64) {
             // The line is sent far from a tick, which comes 4 ms before A1's slot, and long before the next
             // line, so the robot obeys it in a certain frame.
             uno.run_until_cycle(start + random.random_below(8) * CYCLES_PER_MS);
-            uno.send(command(&mut random, &robot).as_bytes());
+            uno.send(random_command(&mut random, &robot).as_bytes());
             uno.send(b"\n");
             commands += 1;
             next += 16 + random.random_below(48);
@@ -155,8 +155,8 @@ fn digest(name: &str) -> (u64, u64) {
 fn ten_minutes_of_random_commands_give_every_robot_its_recorded_pulses() {
     // Recorded when waveforms first had 64 samples (commit d99bebe), which changed only widths:
     // there are as many edges as on the last firmware that had each robot compiled into it
-    // (commit e49c5b5). The large robot is the paper's, four thirds as large: its servos do the
-    // same. The robot with a grain was recorded when its file was added.
+    // (commit e49c5b5). The large robot is the paper's robot scaled by 4/3, so its servos get the
+    // same pulses. The robot with a grain was recorded when its file was added.
     // Recorded again when `deadman` began to count only commands, which ends some gaits earlier.
     let recorded = [
         ("grain", (0xa932_205f_0ec5_bed7, 187_804)),
@@ -179,7 +179,7 @@ fn ten_minutes_of_random_commands_give_every_robot_its_recorded_pulses() {
         "one record for each file"
     );
     for_each(&recorded, |(name, expected)| {
-        if !has_room(name) {
+        if !fits_beside_firmware(name) {
             return;
         }
         let (found, edges) = digest(name);

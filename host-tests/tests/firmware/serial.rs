@@ -5,27 +5,29 @@ use fastrand::Rng;
 use lizard_host_tests::FirmwareBench;
 use simulated_uno::Fidelity;
 
-use crate::{Status, awake, end_flood, first_moving_gait, in_both, pose_at};
+use crate::{
+    Status, boot_standing, end_flood, first_moving_gait, pose_command, run_in_both_simulations,
+};
 
 /// Sends a line and asserts that the answer is `ok`.
-fn wait_for(bench: &mut FirmwareBench, line: &str) {
+fn say_expecting_ok(bench: &mut FirmwareBench, line: &str) {
     let answer = bench.say(line);
     assert!(answer.starts_with("ok "), "{line}: {answer}");
 }
 
 #[test]
 fn a_sender_that_waits_for_answers_loses_nothing_at_full_line_rate() {
-    in_both(|fidelity| {
-        let mut bench = awake(fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut bench = boot_standing(fidelity);
         let mut rng = Rng::with_seed(7);
-        wait_for(&mut bench, "watch 1");
+        say_expecting_ok(&mut bench, "watch 1");
         let padded = format!("status{}", " ".repeat(57));
-        let (gait, pose) = (first_moving_gait(), pose_at([0.0; 4]));
+        let (gait, pose) = (first_moving_gait(), pose_command([0.0; 4]));
         let lines = ["status", "help", &gait, "stop", "speed 70", &pose, &padded];
         for _ in 0..600 {
-            wait_for(&mut bench, rng.choice(&lines).expect("there are some"));
+            say_expecting_ok(&mut bench, rng.choice(&lines).expect("there are some"));
         }
-        wait_for(&mut bench, "watch 0");
+        say_expecting_ok(&mut bench, "watch 0");
         let status = Status::of(&mut bench);
         assert_eq!(
             (status.number("rx_lost"), status.number("late")),
@@ -38,8 +40,8 @@ fn a_sender_that_waits_for_answers_loses_nothing_at_full_line_rate() {
 #[test]
 fn a_whole_line_waits_in_the_buffer_while_an_answer_is_on_its_way() {
     // Sends the longest line right after the question with the longest answer, without waiting.
-    in_both(|fidelity| {
-        let mut bench = awake(fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut bench = boot_standing(fidelity);
         let before = bench.lines().len();
         bench.uno.send(b"help\n");
         bench
@@ -55,11 +57,11 @@ fn a_whole_line_waits_in_the_buffer_while_an_answer_is_on_its_way() {
 
 #[test]
 fn a_long_answer_comes_as_fast_as_the_line_carries_it() {
-    in_both(|fidelity| {
-        let mut bench = awake(fidelity);
-        wait_for(&mut bench, "stand");
+    run_in_both_simulations(|fidelity| {
+        let mut bench = boot_standing(fidelity);
+        say_expecting_ok(&mut bench, "stand");
         let before = bench.bytes().len();
-        wait_for(&mut bench, "help");
+        say_expecting_ok(&mut bench, "help");
         let bytes = &bench.bytes()[before..];
         let duration = bytes[bytes.len() - 1].cycle - bytes[0].cycle;
         // A byte takes 1360 cycles, in stock simavr 1496. Frames, and the time to compose each line,
@@ -71,8 +73,8 @@ fn a_long_answer_comes_as_fast_as_the_line_carries_it() {
 
 #[test]
 fn bytes_lost_in_a_flood_are_counted() {
-    in_both(|fidelity| {
-        let mut bench = awake(fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut bench = boot_standing(fidelity);
         let (before, lines) = (bench.uno.received_by_uno().len(), bench.lines().len());
         bench.uno.flood(b"a\n");
         bench.run_ms(5000);
@@ -90,7 +92,7 @@ fn bytes_lost_in_a_flood_are_counted() {
             "{read} for {answers} answers"
         );
         // After a flood, none of its bytes remain in the buffer.
-        wait_for(&mut bench, &first_moving_gait());
+        say_expecting_ok(&mut bench, &first_moving_gait());
         assert_eq!(Status::of(&mut bench).number("rx_lost"), lost);
     });
 }
@@ -99,8 +101,8 @@ fn bytes_lost_in_a_flood_are_counted() {
 fn a_burst_that_overruns_the_buffer_is_counted_to_the_byte() {
     // While the answer to `help` is being sent, main reads nothing: 64 bytes fit into the
     // buffer and the rest is lost.
-    in_both(|fidelity| {
-        let mut bench = awake(fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut bench = boot_standing(fidelity);
         bench.uno.send(b"help\n");
         bench.run_ms(3);
         bench.uno.send(&[b' '; 150]);
@@ -116,7 +118,7 @@ fn of_an_overrun_the_bytes_that_are_kept_come_once_and_in_their_order() {
     // The receiver has room for two bytes and the byte being received. The answer shows
     // which of the five digits were not lost.
     let byte = 1_400;
-    let mut bench = awake(Fidelity::DataSheet);
+    let mut bench = boot_standing(Fidelity::DataSheet);
     let (mut lost_before, mut overrun) = (0.0, 0);
     for n in 0..40u64 {
         let overruns = bench.uno.overruns();
@@ -149,7 +151,7 @@ fn of_an_overrun_the_bytes_that_are_kept_come_once_and_in_their_order() {
 #[test]
 fn any_bytes_at_all_get_at_most_one_answer_for_a_line() {
     let mut rng = Rng::with_seed(11);
-    let mut bench = awake(Fidelity::DataSheet);
+    let mut bench = boot_standing(Fidelity::DataSheet);
     for _ in 0..300 {
         // No backspace and no delete, which would remove bytes from the line.
         let bytes: Vec<u8> = (0..rng.u64(..80))
@@ -169,8 +171,8 @@ fn any_bytes_at_all_get_at_most_one_answer_for_a_line() {
 
 #[test]
 fn a_line_with_a_garbled_byte_anywhere_is_refused_and_the_byte_counted() {
-    in_both(|fidelity| {
-        let mut bench = awake(fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut bench = boot_standing(fidelity);
         let line = b"speed 90";
         for index in 0..line.len() {
             bench.uno.send(&line[..index]);

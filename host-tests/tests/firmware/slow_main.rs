@@ -1,19 +1,21 @@
 //! Tests that stop main at every instruction that shares data with an interrupt: at the hand-over of a
 //! frame, at the LED, in an answer, and before it sleeps.
 
-use lizard_host::sim::frame::{FRAME, frames, servo_pins};
+use lizard_host::sim::frame::{FRAME, group_frames, servo_pins};
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::Fidelity;
 
-use crate::kept::{MS, assert_no_leap_in_a_gait, pulses};
-use crate::walk::{SLOT, Walk};
-use crate::{Status, awake, for_each, gaits, in_both, robot_after};
+use crate::kept::{CYCLES_PER_MS, assert_no_leap_in_a_gait, recorded_pulses};
+use crate::walk::{ReferenceRun, SLOT_CYCLES};
+use crate::{
+    Status, boot_and_command, boot_standing, for_each, gait_commands, run_in_both_simulations,
+};
 
 /// Upper bound of the cycles that main takes, after it has computed a frame, to hand
 /// the frame over and to set the LED. A sweep takes three frames for each of these
 /// cycles, an odd multiple of the 32 frames between two changes of the LED, so a
 /// second sweep finds the LED lit where it was dark in the first.
-const HAND_OVER: u64 = 608;
+const MAX_HAND_OVER_CYCLES: u64 = 608;
 
 /// Runs until `Control::frame` returns to main with the next frame.
 fn run_to_hand_over(bench: &mut FirmwareBench) {
@@ -33,28 +35,28 @@ fn a_frame_is_played_whole_or_not_at_all_wherever_main_stops_in_the_hand_over() 
     // next frame, and the pin of A1, which may share its port with the LED, rises. This is
     // done in every third frame, because a frame that comes too late is played at the next
     // tick and thus affects two frames.
-    in_both(|fidelity| {
-        let mut walk = Walk::begin(fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut walk = ReferenceRun::start_walking(fidelity);
         let start = walk.next_frame();
-        let count = 2 * 3 * HAND_OVER;
+        let count = 2 * 3 * MAX_HAND_OVER_CYCLES;
         for n in (1..count).step_by(3) {
             let frame = start + n * FRAME;
-            walk.run_to(frame - SLOT - 400);
+            walk.run_to(frame - SLOT_CYCLES - 400);
             run_to_hand_over(&mut walk.bench);
-            walk.bench.uno.run_cycles(n / 3 % HAND_OVER);
+            walk.bench.uno.run_cycles(n / 3 % MAX_HAND_OVER_CYCLES);
             let stall = frame + 2_000 - walk.bench.uno.cycle();
             walk.bench.uno.stall_main(stall);
             walk.run_to(frame + 2_000);
         }
-        walk.run_to(start + count * FRAME - SLOT / 2);
+        walk.run_to(start + count * FRAME - SLOT_CYCLES / 2);
         let frames = walk.frames_since(start);
         assert_eq!(frames.len() as u64, count);
         // No frame is left out: each repeats the previous one, or is the next one computed.
         let asked: Vec<_> = frames.iter().map(|(_, asked)| Some(*asked)).collect();
         let mut next = 0;
         for (n, (sent, _)) in frames.iter().enumerate() {
-            let is_next = sent.all() == asked[next];
-            let is_old = next > 0 && sent.all() == asked[next - 1];
+            let is_next = sent.all_widths() == asked[next];
+            let is_old = next > 0 && sent.all_widths() == asked[next - 1];
             assert!(is_next || is_old, "{} cycles in: {sent:?}", n / 3);
             next += usize::from(is_next);
         }
@@ -65,27 +67,27 @@ fn a_frame_is_played_whole_or_not_at_all_wherever_main_stops_in_the_hand_over() 
             (40..frames.len() / 3 - 40).contains(&repeated),
             "{repeated}"
         );
-        assert_eq!(walk.late(), 0);
+        assert_eq!(walk.late_edge_count(), 0);
     });
 }
 
 #[test]
 fn a_rest_instead_of_a_waiting_frame_ends_all_pulses_or_none() {
-    let mut walk = Walk::begin(Fidelity::DataSheet);
+    let mut walk = ReferenceRun::start_walking(Fidelity::DataSheet);
     for n in 0..160 {
         let frame = walk.next_frame();
-        walk.run_to(frame - SLOT - 400);
-        walk.bench.uno.stall_main(SLOT + 2_400);
+        walk.run_to(frame - SLOT_CYCLES - 400);
+        walk.bench.uno.stall_main(SLOT_CYCLES + 2_400);
         walk.run_to(frame + 3_000);
         walk.bench.uno.send(b"rest\n");
-        walk.run_to(frame + FRAME - SLOT - 400);
+        walk.run_to(frame + FRAME - SLOT_CYCLES - 400);
         run_to_hand_over(&mut walk.bench);
         walk.bench.uno.run_cycles(n);
         let stall = frame + FRAME + 2_000 - walk.bench.uno.cycle();
         walk.bench.uno.stall_main(stall);
-        walk.run_to(frame + 4 * FRAME - SLOT / 2);
+        walk.run_to(frame + 4 * FRAME - SLOT_CYCLES / 2);
         let edges = walk.bench.uno.edges();
-        let sent = frames(&edges, servo_pins(robot()), frame, 4);
+        let sent = group_frames(&edges, servo_pins(robot()), frame, 4);
         for frame in &sent {
             let pulses = frame.widths.iter().flatten().count();
             assert!(pulses % 4 == 0, "{n} cycles in: {frame:?}");
@@ -100,8 +102,8 @@ fn a_rest_instead_of_a_waiting_frame_ends_all_pulses_or_none() {
 fn an_answer_is_the_same_wherever_main_stops_in_writing_it() {
     // More than the time of two bytes, in which the USART sends everything that it holds.
     const STOP: u64 = 3_000;
-    in_both(|fidelity| {
-        let mut bench = awake(fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut bench = boot_standing(fidelity);
         // From here on, the robot prints nothing but answers.
         assert_eq!(bench.say("stop"), "ok stop");
         for cycles in 0..4_500 {
@@ -122,12 +124,12 @@ fn an_answer_is_the_same_wherever_main_stops_in_writing_it() {
 
 #[test]
 fn a_byte_at_any_cycle_of_falling_asleep_wakes_main_at_once() {
-    in_both(|fidelity| {
-        let mut walk = Walk::stand(fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut walk = ReferenceRun::start_standing(fidelity);
         let start = walk.next_frame();
         // Main wakes for each pulse's rise, finds nothing and falls asleep again.
         for n in 0..700 {
-            let rise = start + n / 4 * FRAME + n % 4 * SLOT;
+            let rise = start + n / 4 * FRAME + n % 4 * SLOT_CYCLES;
             walk.run_to(rise - 20_000);
             walk.bench.uno.send(b"stop");
             let bytes_before = walk.bench.bytes().len();
@@ -144,8 +146,8 @@ fn a_byte_at_any_cycle_of_falling_asleep_wakes_main_at_once() {
 
 #[test]
 fn ticks_that_main_misses_are_left_out_and_no_servo_leaps_for_them() {
-    in_both(|fidelity| {
-        let mut walk = Walk::begin(fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut walk = ReferenceRun::start_walking(fidelity);
         walk.next_frame();
         let before = Status::of(&mut walk.bench).number("frames");
         let cycle = walk.bench.uno.cycle();
@@ -155,7 +157,7 @@ fn ticks_that_main_misses_are_left_out_and_no_servo_leaps_for_them() {
             walk.bench.uno.stall_main(5 * FRAME);
             walk.bench.run_ms(300);
         }
-        let pulses = pulses(&walk.bench);
+        let pulses = recorded_pulses(&walk.bench);
         assert!(pulses.iter().all(|pulses| pulses.len() > 250));
         assert_no_leap_in_a_gait(&pulses);
         let frames = Status::of(&mut walk.bench).number("frames") - before;
@@ -167,7 +169,7 @@ fn ticks_that_main_misses_are_left_out_and_no_servo_leaps_for_them() {
 
 #[test]
 fn old_widths_repeat_while_main_stands_still() {
-    let mut walk = Walk::begin(Fidelity::DataSheet);
+    let mut walk = ReferenceRun::start_walking(Fidelity::DataSheet);
     let start = walk.next_frame();
     walk.bench.uno.stall_main(5 * FRAME);
     walk.run_to(start + 4 * FRAME + FRAME / 2);
@@ -176,9 +178,9 @@ fn old_widths_repeat_while_main_stands_still() {
     assert!(
         frames[1..]
             .iter()
-            .all(|(frame, _)| frame.all() == last.all())
+            .all(|(frame, _)| frame.all_widths() == last.all_widths())
     );
-    assert!(last.all().is_some());
+    assert!(last.all_widths().is_some());
 }
 
 #[test]
@@ -187,24 +189,24 @@ fn no_pulse_leaps_after_a_stall_of_any_length_at_any_moment_of_any_gait() {
     // the first cause no reset, stalls from the second on always do.
     const HARMLESS: u64 = 105;
     const SURELY_RESET: u64 = 250;
-    for_each(&gaits(), |gait| {
-        let mut bench = robot_after(gait, Fidelity::DataSheet);
+    for_each(&gait_commands(), |gait| {
+        let mut bench = boot_and_command(gait, Fidelity::DataSheet);
         // Short stalls are tried at more moments, because only short stalls end near the
         // next tick.
         let lengths = (0..6).flat_map(|_| 1..=25).chain(1..=300);
         for (n, length) in lengths.enumerate() {
             // Spreads the stalls evenly over the frame, since 7 919 is a prime.
             bench.uno.run_cycles(FRAME + n as u64 * 7_919 % FRAME);
-            let resets = bench.uno.resets();
-            bench.uno.stall_main(length * MS);
+            let resets = bench.uno.watchdog_resets();
+            bench.uno.stall_main(length * CYCLES_PER_MS);
             // Once the watchdog's first stage has ended the pulses, the reset is certain.
             let wait = if length < HARMLESS { length } else { 350 };
             bench.uno.run_ms(wait + 60);
-            let was_reset = bench.uno.resets() > resets;
+            let was_reset = bench.uno.watchdog_resets() > resets;
             assert!(length < SURELY_RESET || was_reset, "{length} ms");
             assert!(length >= HARMLESS || !was_reset, "{length} ms");
             println!("{gait}, stalled for {length} ms");
-            assert_no_leap_in_a_gait(&pulses(&bench));
+            assert_no_leap_in_a_gait(&recorded_pulses(&bench));
             if was_reset {
                 bench.say(gait);
                 bench.run_ms(900);

@@ -9,7 +9,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use lizard_core::numbers::units::CYCLES_PER_US;
-use lizard_core::virtual_board::Running;
+use lizard_core::virtual_board::RunningRobot;
 use lizard_host_tests::{FirmwareBench, robot};
 
 /// Time after which simavr is stopped. It runs in real time or, on a busy machine, slower.
@@ -22,13 +22,13 @@ fn gait() -> String {
 
 /// Writes an EEPROM whose saved settings start the gait at power-on, as a HEX file.
 fn write_eeprom(folder: &Path) {
-    let mut running = Running::power_on(*robot().firmware());
-    running.run(50);
+    let mut running = RunningRobot::power_on(*robot().firmware());
+    running.run_frames(50);
     let boot = format!("boot {}", gait());
-    assert_eq!(running.say(&boot), format!("ok {boot}"));
+    assert_eq!(running.send_line(&boot), format!("ok {boot}"));
     running.board.send(b"save\r");
-    running.run(200);
-    let printed = running.lines().join("\n");
+    running.run_frames(200);
+    let printed = running.read_lines().join("\n");
     assert!(
         printed.is_empty() || printed.contains("ok save"),
         "{printed}"
@@ -104,7 +104,7 @@ fn trace_tags(pins: [u8; 4]) -> Vec<u8> {
 }
 
 /// Returns the widths of each servo's pulses, us, from a trace file with steps of 10 ns.
-fn widths(vcd: &str) -> HashMap<String, Vec<f64>> {
+fn parse_widths(vcd: &str) -> HashMap<String, Vec<f64>> {
     let (mut names, mut rises, mut now) = (HashMap::new(), HashMap::new(), 0.0);
     let mut widths: HashMap<String, Vec<f64>> = HashMap::new();
     for line in vcd.lines() {
@@ -182,7 +182,7 @@ fn the_elf_file_walks_in_debians_simavr() {
     );
     let vcd = fs::read_to_string(folder.join("pins.vcd")).expect("traces");
     assert!(vcd.contains("$timescale 10ns $end"), "{}", &vcd[..80]);
-    let widths = widths(&vcd);
+    let widths = parse_widths(&vcd);
     for (servo, calibration) in robot().firmware().calibration().iter().enumerate() {
         let all = &widths[&format!("A{}", servo + 1)];
         let [smallest, largest] =

@@ -1,23 +1,23 @@
 //! Tests of `stop`, `rest` and waking, ordered at any moment and checked to the frame.
 
-use lizard_host::sim::frame::{FRAME, Frame, frames as frames_of, servo_pins};
+use lizard_host::sim::frame::{FRAME, Frame, group_frames as frames_of, servo_pins};
 use lizard_host_tests::{FirmwareBench, robot};
 use lizard_robot::Servo;
 use simulated_uno::{CYCLES_PER_MS, CYCLES_PER_US, Fidelity};
 
 use crate::{
-    awake, first_moving_gait, for_each, gaits, in_both, neutral_widths, pose_at, robot_after,
-    widths,
+    boot_and_command, boot_standing, first_moving_gait, for_each, gait_commands, neutral_widths,
+    pose_command, run_in_both_simulations, widths,
 };
 
 /// Cycles between the interruptions of a gait. Not a multiple of a frame, so that many phases of
 /// gait and frame are covered.
-const APART: u64 = 1_237_331;
+const INTERRUPTION_INTERVAL_CYCLES: u64 = 1_237_331;
 
 /// Runs `gait` for a second and `cycle` more cycles, sends a line, and returns the bench
 /// and the cycle at which the last byte of the line has arrived.
 fn interrupt(gait: &str, line: &str, cycle: u64, fidelity: Fidelity) -> (FirmwareBench, u64) {
-    let mut bench = robot_after(gait, fidelity);
+    let mut bench = boot_and_command(gait, fidelity);
     bench.uno.run_cycles(cycle);
     bench.send(line);
     while bench.uno.unsent() > 0 {
@@ -29,10 +29,11 @@ fn interrupt(gait: &str, line: &str, cycle: u64, fidelity: Fidelity) -> (Firmwar
 
 #[test]
 fn stop_freezes_within_one_frame_from_any_phase_of_a_gait() {
-    in_both(|fidelity| {
-        for gait in gaits().iter().skip(1).take(4) {
+    run_in_both_simulations(|fidelity| {
+        for gait in gait_commands().iter().skip(1).take(4) {
             for n in 0..12 {
-                let (mut bench, arrived) = interrupt(gait, "stop", n * APART, fidelity);
+                let (mut bench, arrived) =
+                    interrupt(gait, "stop", n * INTERRUPTION_INTERVAL_CYCLES, fidelity);
                 let frames = bench.run_for_frames(20);
                 let late = frames.iter().filter(|frame| frame.start > arrived + FRAME);
                 let sent: Vec<_> = late.map(Frame::widths).collect();
@@ -47,10 +48,10 @@ fn stop_freezes_within_one_frame_from_any_phase_of_a_gait() {
 fn rest_ends_the_pulses_within_two_frames_and_cuts_none_short() {
     let cases: Vec<(Fidelity, u64)> = [Fidelity::Stock, Fidelity::DataSheet]
         .into_iter()
-        .flat_map(|fidelity| (0..12).map(move |n| (fidelity, n * APART)))
+        .flat_map(|fidelity| (0..12).map(move |n| (fidelity, n * INTERRUPTION_INTERVAL_CYCLES)))
         .collect();
     for_each(&cases, |&(fidelity, at)| {
-        let mut bench = robot_after(&first_moving_gait(), fidelity);
+        let mut bench = boot_and_command(&first_moving_gait(), fidelity);
         bench.uno.run_cycles(at);
         let first = bench.run_for_frames(1)[0];
         // The recorded edges still contain this frame; later edges are appended.
@@ -103,7 +104,7 @@ fn servos_wake_one_after_another_a_tenth_of_a_second_apart() {
             first
         })
     };
-    in_both(|fidelity| {
+    run_in_both_simulations(|fidelity| {
         // After power-on, frames are counted from A1's first pulse.
         let mut bench = FirmwareBench::power_on(fidelity);
         bench.run_ms(1000);
@@ -113,7 +114,7 @@ fn servos_wake_one_after_another_a_tenth_of_a_second_apart() {
         let frames = frames_of(&bench.uno.edges(), pins, first, 40);
         assert_eq!(woken(&frames), [0, 5, 10, 15]);
 
-        let mut bench = robot_after(&first_moving_gait(), fidelity);
+        let mut bench = boot_and_command(&first_moving_gait(), fidelity);
         bench.say("stop");
         bench.run_ms(100);
         let pose = widths(&bench.run_for_frames(1))[0];
@@ -123,7 +124,7 @@ fn servos_wake_one_after_another_a_tenth_of_a_second_apart() {
         let frames = bench.run_for_frames(100);
         let [a1, a2, a3, a4] = woken(&frames);
         assert_eq!([a2 - a1, a3 - a2, a4 - a3], [5, 5, 5]);
-        // The servos wake where they were, and move to `stand` from there.
+        // The servos wake in the pose in which they rested, and move to `stand` from this pose.
         for (servo, at) in [a1, a2, a3, a4].into_iter().enumerate() {
             assert_eq!(frames[at].widths[servo], Some(pose[servo]));
         }
@@ -144,17 +145,21 @@ fn width_at(servo: usize, sweep: f64) -> u64 {
 
 #[test]
 fn a_pose_is_reached_by_all_servos_together_and_not_too_fast() {
-    in_both(|fidelity| {
-        let mut bench = awake(fidelity);
+    run_in_both_simulations(|fidelity| {
+        let mut bench = boot_standing(fidelity);
         // The pose is as far from neutral as the robot allows.
         let (size, _) = [24.0, 16.0, 8.0, 4.0, 2.0]
-            .map(|size| (size, bench.say(&pose_at(sweeps(size)))))
+            .map(|size| (size, bench.say(&pose_command(sweeps(size)))))
             .into_iter()
             .find(|(_, answer)| answer.starts_with("ok pose"))
             .expect("a pose next to neutral is safe");
         bench.say("stand");
         bench.run_ms(3000);
-        assert!(bench.say(&pose_at(sweeps(size))).starts_with("ok pose"));
+        assert!(
+            bench
+                .say(&pose_command(sweeps(size)))
+                .starts_with("ok pose")
+        );
         let sent = widths(&bench.run_for_frames(150));
         let goal: [u64; 4] = std::array::from_fn(|i| width_at(i, sweeps(size)[i]));
         let end = sent[149];

@@ -4,14 +4,14 @@ use lizard_host_tests::{FirmwareBench, robot};
 use lizard_robot::Rail;
 use simulated_uno::{Fidelity, Pin};
 
-use crate::kept::{flashes, pulses_in, widths_now};
-use crate::{Status, awake, first_moving_gait, robot_after};
+use crate::kept::{count_flashes, measure_widths, run_for_pulses};
+use crate::{Status, boot_and_command, boot_standing, first_moving_gait};
 
 /// The largest error of a printed board supply, V: one converter step at 5.5 V and the rounding to two decimals.
 const BOARD_ERROR_V: f64 = 0.04;
 
 /// The first pin that can measure a rail, by its Arduino number.
-const ANALOGUE: u8 = 14;
+const FIRST_ANALOG_PIN: u8 = 14;
 
 /// Returns the reaction and the voltage, V, in each note about the supply since line `from`.
 fn notes(bench: &mut FirmwareBench, from: usize) -> Vec<(String, f64)> {
@@ -28,7 +28,7 @@ fn notes(bench: &mut FirmwareBench, from: usize) -> Vec<(String, f64)> {
 
 #[test]
 fn status_reports_the_supply_within_thirty_millivolts() {
-    let mut bench = awake(Fidelity::DataSheet);
+    let mut bench = boot_standing(Fidelity::DataSheet);
     let mut max_error = 0f64;
     for mv in (2_700..=5_500).step_by(35) {
         bench.uno.set_supply_mv(f64::from(mv));
@@ -84,7 +84,7 @@ fn assert_reacts_at(
 
 #[test]
 fn a_sinking_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
-    let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
+    let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
     assert_reacts_at(
         &mut bench,
         robot().supplies().board,
@@ -98,8 +98,8 @@ fn a_sinking_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
         (status.text("gait"), status.text("fault")),
         ("rest", "supply")
     );
-    assert!(pulses_in(&mut bench, 200).iter().all(Vec::is_empty));
-    let flashes = flashes(&mut bench, 10);
+    assert!(run_for_pulses(&mut bench, 200).iter().all(Vec::is_empty));
+    let flashes = count_flashes(&mut bench, 10);
     assert!(
         flashes.len() >= 3 && flashes.iter().all(|count| *count == 2),
         "{flashes:?}"
@@ -108,7 +108,7 @@ fn a_sinking_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
 
 #[test]
 fn a_low_supply_limits_the_pace_and_refuses_to_write_the_memory() {
-    let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
+    let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
     let pace = |bench: &mut FirmwareBench| {
         let before = Status::of(bench).number("phase");
         bench.run_ms(200);
@@ -142,14 +142,14 @@ fn a_low_supply_limits_the_pace_and_refuses_to_write_the_memory() {
 
 #[test]
 fn a_supply_that_has_recovered_allows_everything_and_begins_nothing() {
-    let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
+    let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
     let [slow, stop, _] = robot().supplies().board;
     bench.uno.set_supply_mv(stop * 1000.0 - 60.0);
     bench.run_ms(500);
     assert_eq!(Status::of(&mut bench).text("gait"), "stop");
     let refused = bench.say(&first_moving_gait());
     assert!(refused.starts_with("err 8 "), "{refused}");
-    let held = widths_now(&mut bench);
+    let held = measure_widths(&mut bench);
     let from = bench.lines().len();
     let mut good_at = None;
     for mv in ((stop * 1000.0) as i32..=5_000).step_by(10) {
@@ -168,7 +168,7 @@ fn a_supply_that_has_recovered_allows_everything_and_begins_nothing() {
         (good_at - slow - 0.150).abs() <= BOARD_ERROR_V,
         "{good_at}: 150 mV above"
     );
-    assert_eq!(widths_now(&mut bench), held, "nothing has moved");
+    assert_eq!(measure_widths(&mut bench), held, "nothing has moved");
     assert_eq!(
         Status::of(&mut bench).text("fault"),
         "supply",
@@ -185,7 +185,7 @@ fn a_supply_that_has_recovered_allows_everything_and_begins_nothing() {
 
 #[test]
 fn a_short_dip_and_a_supply_that_wavers_change_little() {
-    let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
+    let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
     let from = bench.lines().len();
     // A starting servo pulls the supply down for some milliseconds.
     for n in 0..200u64 {
@@ -216,9 +216,9 @@ fn set_rail(bench: &mut FirmwareBench, rail: &Rail, volts: f64) {
 /// Checks that a robot without a rail pin in robot.toml reports no rail, and that the voltage of a
 /// free pin has no effect.
 fn assert_no_rail() {
-    let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
+    let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
     let servos = robot().servos().each_ref().map(|servo| servo.pin);
-    let free: Vec<u8> = (ANALOGUE..ANALOGUE + 6)
+    let free: Vec<u8> = (FIRST_ANALOG_PIN..FIRST_ANALOG_PIN + 6)
         .filter(|pin| !servos.contains(pin))
         .collect();
     assert!(free.len() >= 2, "six pins and four servos");
@@ -241,7 +241,7 @@ fn status_reports_the_servos_rail_if_robot_toml_names_its_pin() {
     let Some(rail) = robot().supplies().rail else {
         return assert_no_rail();
     };
-    let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
+    let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
     let highest = 5.0 * rail.ratio;
     for step in 1..=40 {
         let volts = highest * f64::from(step) / 41.0;
@@ -264,11 +264,11 @@ fn a_sinking_rail_slows_stops_and_rests_the_robot_with_a_good_board_supply() {
     let Some(rail) = robot().supplies().rail else {
         return assert_no_rail();
     };
-    let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
+    let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
     let tolerance = rail_tolerance(&rail, rail.thresholds[0]);
     assert_reacts_at(&mut bench, rail.thresholds, tolerance, |bench, volts| {
         set_rail(bench, &rail, volts);
     });
-    assert!(pulses_in(&mut bench, 200).iter().all(Vec::is_empty));
+    assert!(run_for_pulses(&mut bench, 200).iter().all(Vec::is_empty));
     assert!((Status::of(&mut bench).number("vcc") - 5.0).abs() <= BOARD_ERROR_V);
 }

@@ -51,7 +51,7 @@ fn script_of_all_lines(apart: u64) -> Script {
 }
 
 /// Runs a script and returns the recording and the lines that the robot sent.
-fn run(script: &Script, fidelity: Fidelity) -> (Recording, Vec<String>) {
+fn record_script(script: &Script, fidelity: Fidelity) -> (Recording, Vec<String>) {
     let mut uno = Uno::with_image(FirmwareBench::image(), fidelity);
     supplies::connect(&mut uno, robot());
     let mut lines = Vec::new();
@@ -70,16 +70,16 @@ fn run(script: &Script, fidelity: Fidelity) -> (Recording, Vec<String>) {
 fn ten_minutes_of_commands_give_the_same_widths_and_words_on_the_avr_and_here() {
     for (fidelity, apart) in [(Fidelity::DataSheet, 707), (Fidelity::Stock, 1307)] {
         let mut script = script_of_all_lines(apart);
-        let (mut recording, mut lines) = run(&script, fidelity);
+        let (mut recording, mut lines) = record_script(&script, fidelity);
         let first = recording.frames.first;
         let undecided: Vec<usize> =
-            core_run::undecided(&recording.received_by_uno, first).collect();
+            core_run::undecided_lines(&recording.received_by_uno, first).collect();
         if !undecided.is_empty() {
             for &line in &undecided {
                 script.steps[line].ms += 1;
             }
-            (recording, lines) = run(&script, fidelity);
-            let left = core_run::undecided(&recording.received_by_uno, first).count();
+            (recording, lines) = record_script(&script, fidelity);
+            let left = core_run::undecided_lines(&recording.received_by_uno, first).count();
             assert_eq!(left, 0, "lines that end at a tick");
         }
         assert_eq!(recording.state, State::Alive);
@@ -101,7 +101,7 @@ fn ten_minutes_of_commands_give_the_same_widths_and_words_on_the_avr_and_here() 
         let here: Vec<&str> = here.collect();
         let lines = lines.iter().map(String::as_str);
         let lines: Vec<&str> = lines.filter(|line| !is_report(line)).collect();
-        // Stock simavr has a reference of its own, whatever robot.toml says.
+        // Stock simavr measures against a reference voltage of its own, whatever robot.toml says.
         let printed = |line: &str| comparable_line(line, fidelity);
         for (n, (here, there)) in here.iter().zip(&lines).enumerate() {
             assert_eq!(printed(here), printed(there), "{fidelity:?}, line {n}");

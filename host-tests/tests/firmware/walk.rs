@@ -1,36 +1,36 @@
 //! A robot in a gait, and the pulse widths that it should send, for tests that sweep an event over every cycle.
 
-use lizard_host::sim::frame::{FRAME, Frame, frames, servo_pins};
+use lizard_host::sim::frame::{FRAME, Frame, group_frames, servo_pins};
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::Fidelity;
 
 use crate::pulses::{commanded_widths, first_pulse};
-use crate::{awake, first_moving_gait};
+use crate::{boot_standing, first_moving_gait};
 
 /// Cycles from one servo's pulse to the next one's.
-pub const SLOT: u64 = FRAME / 5;
+pub const SLOT_CYCLES: u64 = FRAME / 5;
 
 /// A robot that walks its first gait or stands, and the bytes and the first pulse from which its widths follow.
-pub struct Walk {
+pub struct ReferenceRun {
     pub bench: FirmwareBench,
     fidelity: Fidelity,
-    first: u64,
-    received: usize,
+    first_pulse_cycle: u64,
+    received_byte_count: usize,
 }
 
-impl Walk {
+impl ReferenceRun {
     /// Starts the robot's first gait and runs it for a second.
-    pub fn begin(fidelity: Fidelity) -> Self {
+    pub fn start_walking(fidelity: Fidelity) -> Self {
         Self::robot_after(&first_moving_gait(), fidelity)
     }
 
     /// Makes the robot stand in its neutral pose and runs it for a second.
-    pub fn stand(fidelity: Fidelity) -> Self {
+    pub fn start_standing(fidelity: Fidelity) -> Self {
         Self::robot_after("stand", fidelity)
     }
 
     fn robot_after(line: &str, fidelity: Fidelity) -> Self {
-        let mut bench = awake(fidelity);
+        let mut bench = boot_standing(fidelity);
         let first = first_pulse(&bench);
         bench.say(line);
         let received = bench.uno.received_by_uno().len();
@@ -38,8 +38,8 @@ impl Walk {
         Self {
             bench,
             fidelity,
-            first,
-            received,
+            first_pulse_cycle: first,
+            received_byte_count: received,
         }
     }
 
@@ -47,28 +47,33 @@ impl Walk {
     /// Discards the edges so far.
     pub fn next_frame(&mut self) -> u64 {
         self.bench.run_for_frames(0);
-        let since = self.bench.uno.cycle() - self.first;
-        self.first + since.div_ceil(FRAME) * FRAME
+        let since = self.bench.uno.cycle() - self.first_pulse_cycle;
+        self.first_pulse_cycle + since.div_ceil(FRAME) * FRAME
     }
 
     /// Returns the frames from cycle `start` to now, and the widths that they should have.
     pub fn frames_since(&self, start: u64) -> Vec<(Frame, [u64; 4])> {
-        let count = (self.bench.uno.cycle() + SLOT / 2 - start) / FRAME;
+        let count = (self.bench.uno.cycle() + SLOT_CYCLES / 2 - start) / FRAME;
         let edges = self.bench.uno.edges();
-        let sent = frames(&edges, servo_pins(robot()), start, count);
-        let asked = self.commands(start, count);
+        let sent = group_frames(&edges, servo_pins(robot()), start, count);
+        let asked = self.expected_widths(start, count);
         sent.into_iter().zip(asked).collect()
     }
 
     /// Returns the widths that `count` frames from cycle `start` on should have.
-    pub fn commands(&self, start: u64, count: u64) -> Vec<[u64; 4]> {
+    pub fn expected_widths(&self, start: u64, count: u64) -> Vec<[u64; 4]> {
         let nothing = Frame {
             start,
             starts: [None; 4],
             widths: [None; 4],
         };
         let frames = vec![nothing; count as usize];
-        commanded_widths(&self.bench, self.first, self.received, &frames)
+        commanded_widths(
+            &self.bench,
+            self.first_pulse_cycle,
+            self.received_byte_count,
+            &frames,
+        )
     }
 
     /// True if the simulation is the one corrected by the data sheet.
@@ -94,7 +99,7 @@ impl Walk {
     }
 
     /// Returns the number of edges that the firmware has counted as late.
-    pub fn late(&self) -> u64 {
+    pub fn late_edge_count(&self) -> u64 {
         self.word("pulses::LATE").into()
     }
 }

@@ -4,8 +4,13 @@
 use lizard_host_tests::FirmwareBench;
 use simulated_uno::{Fidelity, ResetCause};
 
-use crate::kept::{MS, flashes, power_cycle, pulses, pulses_in, slew_limit, widths_now};
-use crate::{Status, awake, first_moving_gait, neutral_widths, pose_at, robot_after};
+use crate::kept::{
+    CYCLES_PER_MS, count_flashes, measure_widths, power_cycle, recorded_pulses, run_for_pulses,
+    slew_limit,
+};
+use crate::{
+    Status, boot_and_command, boot_standing, first_moving_gait, neutral_widths, pose_command,
+};
 
 /// Timer1's registers, by data address.
 const TCCR1B: u16 = 0x81;
@@ -17,22 +22,22 @@ const TIMEOUT_MS: u64 = 250 + 20;
 
 /// Returns a robot that holds a pose other than the neutral one, and the pulse widths of that pose.
 fn hold_pose() -> (FirmwareBench, [u64; 4]) {
-    let mut bench = awake(Fidelity::DataSheet);
-    bench.say(&pose_at([5.0, -4.0, 3.0, -2.0]));
+    let mut bench = boot_standing(Fidelity::DataSheet);
+    bench.say(&pose_command([5.0, -4.0, 3.0, -2.0]));
     bench.run_ms(1000);
-    let widths = widths_now(&mut bench);
+    let widths = measure_widths(&mut bench);
     assert_ne!(widths, neutral_widths());
     (bench, widths)
 }
 
 /// Runs until the watchdog resets the chip, ends the stall of main, and returns the cycles that passed.
 fn run_until_reset(bench: &mut FirmwareBench) -> u64 {
-    let (start, resets) = (bench.uno.cycle(), bench.uno.resets());
-    let limit = TIMEOUT_MS * MS;
+    let (start, resets) = (bench.uno.cycle(), bench.uno.watchdog_resets());
+    let limit = TIMEOUT_MS * CYCLES_PER_MS;
     assert!(
         bench
             .uno
-            .run_until(limit, 1_000, |uno| uno.resets() > resets),
+            .run_until(limit, 1_000, |uno| uno.watchdog_resets() > resets),
         "no reset"
     );
     // The restarted program must not be stalled.
@@ -47,11 +52,11 @@ fn a_main_that_hangs_is_reset_and_the_robot_held_without_a_wrong_pulse() {
         // In each round, main stops at another time in the frame.
         bench.uno.run_cycles(n * 7_919);
         bench.uno.take_edges();
-        bench.uno.stall_main(2_000 * MS);
+        bench.uno.stall_main(2_000 * CYCLES_PER_MS);
         let cycles = run_until_reset(&mut bench);
-        assert!(cycles > 200 * MS, "{cycles}: too early");
+        assert!(cycles > 200 * CYCLES_PER_MS, "{cycles}: too early");
         bench.uno.run_ms(300);
-        for (servo, pulses) in pulses(&bench).iter().enumerate() {
+        for (servo, pulses) in recorded_pulses(&bench).iter().enumerate() {
             for pulse in pulses {
                 assert_eq!(pulse.width, widths[servo], "A{} in round {n}", servo + 1);
             }
@@ -60,7 +65,7 @@ fn a_main_that_hangs_is_reset_and_the_robot_held_without_a_wrong_pulse() {
                 .map(|pair| pair[1].start - pair[0].start)
                 .max();
             assert!(
-                gap.is_some_and(|gap| gap < 200 * MS),
+                gap.is_some_and(|gap| gap < 200 * CYCLES_PER_MS),
                 "limp for {gap:?} cycles"
             );
         }
@@ -81,13 +86,13 @@ fn a_main_that_hangs_is_reset_and_the_robot_held_without_a_wrong_pulse() {
 #[test]
 fn a_hang_in_a_walk_ends_in_the_pose_of_the_last_frame_until_an_order() {
     for hang_ms in [3, 137, 411, 893] {
-        let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
+        let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
         bench.run_ms(hang_ms);
-        let before = widths_now(&mut bench);
-        bench.uno.stall_main(2_000 * MS);
+        let before = measure_widths(&mut bench);
+        bench.uno.stall_main(2_000 * CYCLES_PER_MS);
         run_until_reset(&mut bench);
         bench.uno.run_ms(60);
-        let after = pulses_in(&mut bench, 5000);
+        let after = run_for_pulses(&mut bench, 5000);
         for servo in 0..4 {
             let first = after[servo][0].width;
             assert!(after[servo].iter().all(|pulse| pulse.width == first));
@@ -99,7 +104,7 @@ fn a_hang_in_a_walk_ends_in_the_pose_of_the_last_frame_until_an_order() {
             );
         }
         assert_eq!(Status::of(&mut bench).text("gait"), "stop");
-        let flashes = flashes(&mut bench, 12);
+        let flashes = count_flashes(&mut bench, 12);
         assert!(
             flashes.len() >= 3 && flashes.iter().all(|count| *count == 4),
             "{flashes:?}"
@@ -107,7 +112,7 @@ fn a_hang_in_a_walk_ends_in_the_pose_of_the_last_frame_until_an_order() {
         assert_eq!(bench.say("stand"), "ok stand");
         bench.run_ms(1500);
         assert_eq!(Status::of(&mut bench).text("fault"), "none");
-        assert_eq!(widths_now(&mut bench), neutral_widths());
+        assert_eq!(measure_widths(&mut bench), neutral_widths());
     }
 }
 
@@ -122,7 +127,7 @@ fn a_stopped_timer_or_disabled_interrupts_are_detected() {
         bench.uno.poke(register, value);
         run_until_reset(&mut bench);
         bench.uno.run_ms(100);
-        assert_eq!(widths_now(&mut bench), widths, "{register:02x}={value}");
+        assert_eq!(measure_widths(&mut bench), widths, "{register:02x}={value}");
         let status = Status::of(&mut bench);
         assert_eq!(status.text("reset"), "watchdog", "{register:02x}={value}");
     }
@@ -133,17 +138,21 @@ fn disabled_interrupts_are_detected_and_the_chip_tells_the_cause() {
     let (mut bench, widths) = hold_pose();
     // SREG's I bit.
     let sreg = 0x5f;
-    assert!(bench.uno.run_until(MS, 1, |uno| uno.peek(sreg) & 0x80 == 0));
-    bench.uno.block_interrupts(1_000 * MS);
+    assert!(
+        bench
+            .uno
+            .run_until(CYCLES_PER_MS, 1, |uno| uno.peek(sreg) & 0x80 == 0)
+    );
+    bench.uno.block_interrupts(1_000 * CYCLES_PER_MS);
     run_until_reset(&mut bench);
     bench.uno.run_ms(100);
     assert_eq!(Status::of(&mut bench).text("reset"), "watchdog");
-    assert_eq!(widths_now(&mut bench), widths);
+    assert_eq!(measure_widths(&mut bench), widths);
 }
 
 #[test]
 fn a_robot_that_works_is_never_reset() {
-    let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
+    let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
     bench.uno.flood(b"status\nhelp\ncal\nsave\nx");
     bench.run_ms(20_000);
     assert_eq!(bench.uno.reset_events().len(), 1);
@@ -170,7 +179,7 @@ fn every_cause_of_a_reset_is_reported_and_resets_are_counted() {
         expect(&mut bench, "power", 0.0);
         bench.uno.reset();
         expect(&mut bench, "external", 1.0);
-        bench.uno.stall_main(1_000 * MS);
+        bench.uno.stall_main(1_000 * CYCLES_PER_MS);
         run_until_reset(&mut bench);
         expect(&mut bench, "watchdog", 2.0);
         bench.uno.set_supply_mv(2_400.0);
@@ -243,11 +252,11 @@ fn a_hang_that_ends_by_itself_is_reset_like_any_other() {
     let (mut bench, widths) = hold_pose();
     // The stalls range from shorter than the watchdog's first stage of 125 ms to longer than both stages.
     for ms in (90..300).step_by(10) {
-        let resets = bench.uno.resets();
-        bench.uno.stall_main(ms * MS);
+        let resets = bench.uno.watchdog_resets();
+        bench.uno.stall_main(ms * CYCLES_PER_MS);
         bench.uno.run_ms(ms + 150);
-        let was_reset = bench.uno.resets() > resets;
-        let frames = pulses_in(&mut bench, 200);
+        let was_reset = bench.uno.watchdog_resets() > resets;
+        let frames = run_for_pulses(&mut bench, 200);
         for (servo, pulses) in frames.iter().enumerate() {
             let all = pulses.len() >= 9 && pulses.iter().all(|pulse| pulse.width == widths[servo]);
             assert!(all, "A{} after {ms} ms: {pulses:?}", servo + 1);
@@ -256,7 +265,7 @@ fn a_hang_that_ends_by_itself_is_reset_like_any_other() {
         let fault = if was_reset { "watchdog" } else { "none" };
         assert_eq!(Status::of(&mut bench).text("fault"), fault, "{ms} ms");
         // The next iteration begins without a fault, in the same pose.
-        bench.say(&pose_at([5.0, -4.0, 3.0, -2.0]));
+        bench.say(&pose_command([5.0, -4.0, 3.0, -2.0]));
         bench.run_ms(500);
     }
 }
@@ -273,11 +282,11 @@ fn a_resting_robot_that_hangs_restarts_without_a_pulse() {
                 let erased = bench.uno.eeprom().map(|_| 0xff);
                 bench.uno.set_eeprom(&erased);
             }
-            let resets = bench.uno.resets();
-            bench.uno.stall_main(ms * MS);
+            let resets = bench.uno.watchdog_resets();
+            bench.uno.stall_main(ms * CYCLES_PER_MS);
             bench.uno.run_ms(ms + 150);
-            assert!(bench.uno.resets() > resets);
-            let after = pulses_in(&mut bench, 6000);
+            assert!(bench.uno.watchdog_resets() > resets);
+            let after = run_for_pulses(&mut bench, 6000);
             assert!(after.iter().all(Vec::is_empty), "{ms} ms: {after:?}");
             let status = Status::of(&mut bench);
             let reported = [status.text("gait"), status.text("fault")];
@@ -286,7 +295,7 @@ fn a_resting_robot_that_hangs_restarts_without_a_pulse() {
             assert_eq!(walk, "err 7 servos are resting, send stand first");
             assert_eq!(bench.say("stand"), "ok stand");
             bench.run_ms(2000);
-            assert_eq!(widths_now(&mut bench), neutral_widths());
+            assert_eq!(measure_widths(&mut bench), neutral_widths());
         }
     }
 }
@@ -298,10 +307,10 @@ fn a_robot_that_rests_and_is_reset_rests_until_boot_or_an_order() {
     bench.run_ms(300);
     bench.uno.reset();
     // `boot` starts `stand` unless a byte arrives; here none does.
-    let before = pulses_in(&mut bench, 2_900);
+    let before = run_for_pulses(&mut bench, 2_900);
     assert!(before.iter().all(Vec::is_empty), "{before:?}");
     bench.uno.run_ms(2_500);
-    assert_eq!(widths_now(&mut bench), neutral_widths());
+    assert_eq!(measure_widths(&mut bench), neutral_widths());
     let printed = bench
         .lines()
         .iter()
@@ -312,7 +321,7 @@ fn a_robot_that_rests_and_is_reset_rests_until_boot_or_an_order() {
     bench.uno.reset();
     bench.uno.run_ms(1000);
     bench.uno.send(b"\r");
-    let after = pulses_in(&mut bench, 5_000);
+    let after = run_for_pulses(&mut bench, 5_000);
     assert!(
         after.iter().all(Vec::is_empty),
         "a byte has called boot off"

@@ -8,14 +8,14 @@ use lizard_core::motion::{Activity, Motion};
 use lizard_core::numbers::gaits::GaitId;
 use lizard_core::numbers::pose::{Pose, Pulses};
 use lizard_core::numbers::units::CYCLE;
-use lizard_core::virtual_board::Running;
+use lizard_core::virtual_board::RunningRobot;
 use lizard_host_tests::Named;
 use lizard_robot::{CheckedGait, Robot};
 
 use crate::truth::{Verdict, angles, is_safe, pose_within};
 
 /// Frames until all servos are awake.
-pub const WAKING: u32 = 20;
+pub const WAKING_FRAMES: u32 = 20;
 
 /// The speed of one angle step per frame, deg/s.
 pub const STEP_PER_FRAME: f64 = 50.0 * 360.0 / 65536.0;
@@ -46,7 +46,7 @@ pub fn max_speed_change(robot: &Robot) -> f64 {
 fn compute_max_speed_change(robot: &Robot) -> f64 {
     let moves = robot.pace().slew / 2.0;
     let gaits = GaitId::all(robot.gaits().len()).map(|id| {
-        let (speed, change) = fastest(robot, id);
+        let (speed, change) = max_speed_and_change(robot, id);
         change.max(speed / ACCELERATION_FRAMES + robot.pace().slew / 4.0)
             + speed / ACCELERATION_FRAMES
     });
@@ -55,7 +55,7 @@ fn compute_max_speed_change(robot: &Robot) -> f64 {
 
 /// Returns the largest servo speed in a gait at full pace, and the largest change of that speed from one
 /// frame to the next, deg/s.
-fn fastest(robot: &Robot, id: GaitId) -> (f64, f64) {
+fn max_speed_and_change(robot: &Robot, id: GaitId) -> (f64, f64) {
     let firmware = robot.firmware();
     let gait = firmware.gait(id);
     let sweeps = |phase: u32| {
@@ -82,43 +82,43 @@ pub fn settling_frames(robot: &Robot) -> u32 {
     let ranges = travels.map(|servo| f64::from(servo.max.0) - f64::from(servo.min.0));
     let farthest = ranges.into_iter().fold(0.0, f64::max);
     let frames = 1.5 * farthest * STEP_PER_FRAME / robot.pace().slew;
-    WAKING + 30 + (1.05 * frames) as u32
+    WAKING_FRAMES + 30 + (1.05 * frames) as u32
 }
 
 /// A robot each frame of which is checked when it is sent.
-pub struct Walker<'a> {
+pub struct CheckedRobot<'a> {
     name: &'a str,
     robot: &'a Robot,
-    running: Running,
+    running: RunningRobot,
     /// Speed of each servo in the last frame, deg/s.
     speeds: [f64; 4],
     /// True if the servos may stop at once in the next frame.
     may_stop: bool,
-    most_jerk: f64,
+    allowed_speed_change: f64,
     /// The largest change of speed so far, deg/s.
-    pub jerk: f64,
+    pub largest_speed_change: f64,
 }
 
-impl<'a> Walker<'a> {
+impl<'a> CheckedRobot<'a> {
     /// Powers a robot on and discards its banner.
     pub fn new(Named { name, robot }: &'a Named) -> Self {
         let mut walker = Self {
             name,
             robot,
-            running: Running::power_on(*robot.firmware()),
+            running: RunningRobot::power_on(*robot.firmware()),
             speeds: [0.0; 4],
             may_stop: false,
-            most_jerk: max_speed_change(robot),
-            jerk: 0.0,
+            allowed_speed_change: max_speed_change(robot),
+            largest_speed_change: 0.0,
         };
-        walker.read();
+        walker.take_output_lines();
         walker
     }
 
     /// Returns a robot that is awake and stands.
     pub fn standing(named: &'a Named) -> Self {
         let mut walker = Self::new(named);
-        walker.run(WAKING + 1);
+        walker.run_frames(WAKING_FRAMES + 1);
         walker
     }
 
@@ -131,13 +131,13 @@ impl<'a> Walker<'a> {
     }
 
     /// Reads all output of the console.
-    pub fn read(&mut self) -> Vec<String> {
-        self.running.lines()
+    pub fn take_output_lines(&mut self) -> Vec<String> {
+        self.running.read_lines()
     }
 
     /// Types a line; returns its answer.
     pub fn say(&mut self, line: &str) -> String {
-        let answer = self.running.say(line);
+        let answer = self.running.send_line(line);
         if ["stop", "rest"].contains(&line) {
             self.may_stop = true;
         }
@@ -153,7 +153,7 @@ impl<'a> Walker<'a> {
     /// Moves to a pose; false if the guard stops the robot on the path.
     pub fn move_to(&mut self, pose: &Pose) -> bool {
         self.expect_ok(&self.pose_command(pose));
-        self.run(settling_frames(self.robot));
+        self.run_frames(settling_frames(self.robot));
         self.motion().hazard().is_none()
     }
 
@@ -164,14 +164,14 @@ impl<'a> Walker<'a> {
     }
 
     /// Runs a number of frames.
-    pub fn run(&mut self, frames: u32) {
+    pub fn run_frames(&mut self, frames: u32) {
         for _ in 0..frames {
-            self.frame();
+            self.run_frame();
         }
     }
 
     /// Runs a frame and checks its safety, its pulses and the servos' speeds.
-    pub fn frame(&mut self) -> Pulses {
+    pub fn run_frame(&mut self) -> Pulses {
         let (name, robot) = (self.name, self.robot);
         let before = self.pose();
         let held_before = self.motion().hazard().is_some();
@@ -188,7 +188,7 @@ impl<'a> Walker<'a> {
         assert_ne!(Verdict::of(robot, at), Verdict::Unsafe, "{name}: {at:?}");
         self.check_pulses(&pose, pulses);
 
-        // During a move the phase is 0. In a gait it is 0 only once per cycle.
+        // During a move, the phase is 0. In a gait, the phase is 0 only once per cycle.
         let in_gait = motion.phase() != 0;
         let limit = if in_gait {
             robot.pace().gait_slew
@@ -210,10 +210,10 @@ impl<'a> Walker<'a> {
             let change = (speed - last).abs();
             if !(self.may_stop || guard_stopped) {
                 assert!(
-                    change <= self.most_jerk,
+                    change <= self.allowed_speed_change,
                     "{name}: {last} and then {speed} deg/s"
                 );
-                self.jerk = self.jerk.max(change);
+                self.largest_speed_change = self.largest_speed_change.max(change);
             }
         }
         self.speeds = speeds;
@@ -262,7 +262,7 @@ pub fn gait_command(gait: &CheckedGait) -> String {
 }
 
 /// Returns a random command that moves a robot, stops it or sets its speed.
-pub fn any_command(rng: &mut Rng, robot: &Robot) -> String {
+pub fn random_command(rng: &mut Rng, robot: &Robot) -> String {
     let pose = |rng: &mut Rng, share: f64| {
         let firmware = robot.firmware();
         let pose = pose_within(rng, &firmware.calibration(), share);
@@ -279,7 +279,7 @@ pub fn any_command(rng: &mut Rng, robot: &Robot) -> String {
     }
 }
 
-/// Returns the robot's activity once a command is complete; `None` if the command is none that selects an activity.
+/// Returns the robot's activity once a command is complete; `None` for a command that selects no activity.
 pub fn final_activity(robot: &Robot, command: &str) -> Option<Activity> {
     let gait = robot
         .gaits()

@@ -5,7 +5,7 @@ use lizard_core::numbers::pose::Pulses;
 use lizard_host_tests::{Named, paper, robots};
 use lizard_robot::{CheckedGait, Robot, Travel};
 
-use crate::frames::{Walker, gait_command, settling_frames};
+use crate::frames::{CheckedRobot, gait_command, settling_frames};
 
 /// Converts pulse widths in cycles of 62.5 ns to servo angles in the chassis frame, deg.
 fn angles(robot: &Robot, pulses: Pulses) -> [f64; 4] {
@@ -20,29 +20,29 @@ fn angles(robot: &Robot, pulses: Pulses) -> [f64; 4] {
 /// robot on its path to the gait's first pose.
 fn travel(named: &Named, gait: &CheckedGait, percent: f64) -> Option<Travel> {
     let robot = &named.robot;
-    let mut walker = Walker::standing(named);
+    let mut walker = CheckedRobot::standing(named);
     walker.expect_ok(&format!("speed {percent}"));
     walker.expect_ok(&gait_command(gait));
-    walker.run(settling_frames(robot));
+    walker.run_frames(settling_frames(robot));
     if walker.motion().hazard().is_some() {
         return None;
     }
     let frames = gait.period() * 50.0 * 100.0 / percent;
     // The distance of the phase from 0, since the phase of a reversed gait falls.
-    let from_zero = |walker: &Walker| {
+    let from_zero = |walker: &CheckedRobot| {
         let phase = i64::from(walker.motion().phase());
         phase.min((1 << 24) - phase)
     };
     let near = (f64::from(1 << 24) / frames) as i64;
     while from_zero(&walker) > near / 2 + 1 {
-        walker.run(1);
+        walker.run_frames(1);
     }
     let mut path = vec![angles(
         robot,
         walker.pose().pulses(walker.motion().calibration()),
     )];
     for _ in 0..frames.ceil() as usize {
-        path.push(angles(robot, walker.frame()));
+        path.push(angles(robot, walker.run_frame()));
     }
     // A cycle may end between two frames.
     let over = path.len() - 1;
@@ -54,7 +54,13 @@ fn travel(named: &Named, gait: &CheckedGait, percent: f64) -> Option<Travel> {
 
 /// Asserts that a travel is the expected one: forward to within `largest` mm or 1 %, the turn to within
 /// 0.2 deg. An expected value of `None` is not compared.
-fn check(name: &str, travel: Travel, largest: f64, forward: Option<f64>, turn: Option<f64>) {
+fn assert_travel(
+    name: &str,
+    travel: Travel,
+    largest: f64,
+    forward: Option<f64>,
+    turn: Option<f64>,
+) {
     println!(
         "{name}: {:+.2} mm, {:+.2} deg, expected {forward:?} {turn:?}",
         travel.forward, travel.turn
@@ -93,7 +99,7 @@ fn the_pulses_of_every_gait_lead_as_far_as_the_gait_in_floating_point() {
                 let name = format!("{}: {} at {percent} %", named.name, gait.name());
                 // On a robot without symmetry, a tenth of a degree may decide which foot sticks.
                 let max = 0.01 * named.robot.lizard().links.l10;
-                check(&name, travel, max, expected.forward, expected.turn);
+                assert_travel(&name, travel, max, expected.forward, expected.turn);
             }
         }
     }
@@ -114,7 +120,7 @@ fn the_pulses_of_the_papers_gaits_lead_there_within_a_third_of_a_millimetre() {
         decided += usize::from(expected.forward.is_some() && expected.turn.is_some());
         for percent in [100.0, 80.0, 50.0, 20.0] {
             let travel = travel(&named, gait, percent).expect("the way is clear");
-            check(gait.name(), travel, 0.3, expected.forward, expected.turn);
+            assert_travel(gait.name(), travel, 0.3, expected.forward, expected.turn);
         }
     }
     assert!(decided >= 9, "{decided}");

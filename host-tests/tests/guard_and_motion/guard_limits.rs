@@ -39,13 +39,13 @@ fn at_the_limit(robot: &Robot) -> Clearance {
 fn a_value_at_its_limit_is_safe_and_the_next_one_below_is_named() {
     for Named { name, robot } in robots() {
         let firmware = robot.firmware();
-        assert_eq!(at_the_limit(robot).hazard(firmware), None, "{name}");
+        assert_eq!(at_the_limit(robot).first_hazard(firmware), None, "{name}");
         for (index, margin) in MARGINS.into_iter().enumerate() {
             let mut core = at_the_limit(robot);
             let value = Sine(core.margins[index].0 - 1);
             core.margins[index] = value;
             let hazard = Some(Hazard::Margin { margin, value });
-            assert_eq!(core.hazard(firmware), hazard, "{name}");
+            assert_eq!(core.first_hazard(firmware), hazard, "{name}");
         }
     }
 }
@@ -65,7 +65,7 @@ fn a_slider_at_an_end_of_its_stroke_is_safe_and_a_hair_beyond_is_named() {
             ] {
                 let mut core = at_the_limit(robot);
                 core.sliders_sq[index] = length_sq;
-                let named = match core.hazard(firmware) {
+                let named = match core.first_hazard(firmware) {
                     None => None,
                     Some(Hazard::Stroke { side, .. }) => Some(side),
                     Some(margin) => panic!("{name}: {margin:?}"),

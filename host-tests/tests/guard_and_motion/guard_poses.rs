@@ -12,8 +12,8 @@ use lizard_host_tests::{Named, rng, robots};
 use lizard_robot::Robot;
 
 use crate::truth::{
-    ENDS, MARGINS, MIN_TYPE2, Spread, Truth, angles, any_pose, is_safe, open_end, per_mm,
-    pose_within, sine,
+    ErrorStatistics, ExactConditions, FIVE_BAR_OF_MARGIN, MARGINS, MIN_TYPE2, angles, any_pose,
+    is_safe, open_end, per_mm, pose_within, sine,
 };
 
 /// Number of poses tested on each robot.
@@ -24,37 +24,37 @@ const PAIRS: usize = 1500;
 /// The guard's errors and decisions for many poses of one robot. A band is the error that the guard may have.
 #[derive(Default)]
 struct Findings {
-    type2: Spread,
-    type1: Spread,
-    leg: Spread,
+    type2: ErrorStatistics,
+    type1: ErrorStatistics,
+    leg: ErrorStatistics,
     /// The errors of the strokes, in steps of the side's scale.
-    stroke: Spread,
+    stroke: ErrorStatistics,
     /// The largest error of each margin, in bands.
-    in_bands: [f64; 10],
+    max_margin_errors: [f64; 10],
     safe: usize,
     refused: usize,
     /// Poses where the guard and floating point decide differently. `farthest` is the largest distance of such
     /// a pose from a limit, in bands.
-    differ: usize,
-    farthest: f64,
+    disagreements: usize,
+    max_disagreement_bands: f64,
     /// The number of times that each of the twelve conditions was named.
-    named: [usize; 12],
+    hazard_counts: [usize; 12],
 }
 
 impl Findings {
     fn add(&mut self, robot: &Robot, pose: &Pose) {
         let firmware = robot.firmware();
         let core = Clearance::of(firmware, pose);
-        let hazard = core.hazard(firmware);
+        let hazard = core.first_hazard(firmware);
         let named = hazard.map(index_of);
         match named {
             None => self.safe += 1,
             Some(index) => {
                 self.refused += 1;
-                self.named[index] += 1;
+                self.hazard_counts[index] += 1;
             }
         }
-        let truth = match Truth::of(robot, angles(firmware, pose)) {
+        let truth = match ExactConditions::of(robot, angles(firmware, pose)) {
             Ok(truth) => truth,
             Err(fault) => {
                 // The guard checks the head first, so it may name an earlier condition.
@@ -68,14 +68,14 @@ impl Findings {
             }
         };
         self.compare(robot, &core, &truth);
-        let clear_by = truth.clear_by();
+        let clear_by = truth.distances_from_limits();
         for (by, broken) in clear_by.into_iter().zip(truth.broken) {
             assert!(by.abs() <= 1.0 || broken == (by < 0.0), "{truth:?}");
         }
         let smallest = clear_by.into_iter().fold(f64::INFINITY, f64::min);
         if hazard.is_none() != (smallest >= 0.0) {
-            self.differ += 1;
-            self.farthest = self.farthest.max(smallest.abs());
+            self.disagreements += 1;
+            self.max_disagreement_bands = self.max_disagreement_bands.max(smallest.abs());
         }
         assert!(
             smallest.abs() <= 1.0 || hazard.is_none() == (smallest > 0.0),
@@ -91,9 +91,9 @@ impl Findings {
     }
 
     /// Compares the guard's margins and strokes with those in floating point.
-    fn compare(&mut self, robot: &Robot, core: &Clearance, truth: &Truth) {
+    fn compare(&mut self, robot: &Robot, core: &Clearance, truth: &ExactConditions) {
         for (index, (value, expected)) in core.margins.iter().zip(truth.margins).enumerate() {
-            let end = ENDS.get(index).copied();
+            let end = FIVE_BAR_OF_MARGIN.get(index).copied();
             if let Some(end) = end
                 && (truth.margins[end] < MIN_TYPE2 || truth.is_at_crossing(end))
             {
@@ -112,7 +112,8 @@ impl Findings {
             };
             let error = sine(*value) - expected;
             spread.add(error);
-            self.in_bands[index] = self.in_bands[index].max(error.abs() / truth.bands[index]);
+            self.max_margin_errors[index] =
+                self.max_margin_errors[index].max(error.abs() / truth.bands[index]);
         }
         for (side, (length_sq, travel)) in Side::ALL
             .into_iter()
@@ -134,12 +135,12 @@ impl Findings {
             self.stroke,
             self.safe,
             self.refused,
-            self.differ,
-            self.farthest,
-            self.in_bands.into_iter().fold(0.0, f64::max),
-            self.named
+            self.disagreements,
+            self.max_disagreement_bands,
+            self.max_margin_errors.into_iter().fold(0.0, f64::max),
+            self.hazard_counts
         );
-        for (margin, deviation) in MARGINS.iter().zip(self.in_bands) {
+        for (margin, deviation) in MARGINS.iter().zip(self.max_margin_errors) {
             assert!(
                 deviation <= 1.0,
                 "{name}: {margin:?} is {deviation} bands off"
@@ -167,7 +168,7 @@ fn index_of(hazard: Hazard) -> usize {
 }
 
 /// Returns random poses in the full travel and nearer to neutral, where the border of the safe poses lies.
-fn poses(rng: &mut Rng, robot: &Robot) -> impl Iterator<Item = Pose> {
+fn random_poses(rng: &mut Rng, robot: &Robot) -> impl Iterator<Item = Pose> {
     let calibration = robot.firmware().calibration();
     let shares = [1.0, 0.7, 0.4, 0.2];
     (0..POSES).map(move |n| pose_within(rng, &calibration, shares[n % shares.len()]))
@@ -178,11 +179,11 @@ fn the_guard_measures_every_margin_and_decides_as_floating_point_does() {
     let mut named = [0; 12];
     for (n, Named { name, robot }) in robots().iter().enumerate() {
         let mut findings = Findings::default();
-        for pose in poses(&mut rng(100 + n as u64), robot) {
+        for pose in random_poses(&mut rng(100 + n as u64), robot) {
             findings.add(robot, &pose);
         }
         findings.report(name);
-        for (sum, here) in named.iter_mut().zip(findings.named) {
+        for (sum, here) in named.iter_mut().zip(findings.hazard_counts) {
             *sum += here;
         }
     }
@@ -233,9 +234,9 @@ fn straddling_poses(robot: &Robot, far: Pose) -> [Pose; 2] {
 fn a_reason_carries_the_value_that_broke_the_limit() {
     let mut reasons = [0; 2];
     for (n, Named { name, robot }) in robots().iter().enumerate() {
-        for pose in poses(&mut rng(300 + n as u64), robot).take(2000) {
+        for pose in random_poses(&mut rng(300 + n as u64), robot).take(2000) {
             let core = Clearance::of(robot.firmware(), &pose);
-            match core.hazard(robot.firmware()) {
+            match core.first_hazard(robot.firmware()) {
                 None => {}
                 Some(Hazard::Margin { margin, value }) => {
                     let index = MARGINS.iter().position(|known| *known == margin);
@@ -257,15 +258,15 @@ fn a_reason_carries_the_value_that_broke_the_limit() {
 fn the_smallest_margin_is_the_one_of_kinematics() {
     for (n, Named { name, robot }) in robots().iter().enumerate() {
         let mut safe = 0;
-        for pose in poses(&mut rng(400 + n as u64), robot).take(10_000) {
+        for pose in random_poses(&mut rng(400 + n as u64), robot).take(10_000) {
             if !is_safe(robot.firmware(), &pose) {
                 continue;
             }
             safe += 1;
             let at = angles(robot.firmware(), &pose);
-            let truth = Truth::of(robot, at).expect("a safe pose");
+            let truth = ExactConditions::of(robot, at).expect("a safe pose");
             let smallest = truth.margins.into_iter().fold(f64::INFINITY, f64::min);
-            let error = sine(Clearance::of(robot.firmware(), &pose).smallest()) - smallest;
+            let error = sine(Clearance::of(robot.firmware(), &pose).smallest_margin()) - smallest;
             let largest = truth.bands[..10].iter().copied().fold(0.0, f64::max);
             assert!(error.abs() <= largest, "{name}: {pose:?} is {error} off");
         }

@@ -6,7 +6,7 @@ use lizard_core::numbers::pose::Pose;
 use lizard_host_tests::{Named, rng, robots};
 
 use crate::frames::{
-    WAKING, Walker, any_command, final_activity, max_speed_change, settling_frames,
+    CheckedRobot, WAKING_FRAMES, final_activity, max_speed_change, random_command, settling_frames,
 };
 use crate::truth::safe_pose;
 
@@ -19,17 +19,17 @@ fn no_frame_is_too_fast_too_sudden_or_unsafe_for_any_commands() {
         let mut rng = rng(1000 + n as u64);
         let (mut done, mut refused, mut largest) = (0, 0, 0.0f64);
         for _ in 0..DIALOGUES {
-            let mut walker = Walker::new(named);
+            let mut walker = CheckedRobot::new(named);
             for _ in 0..12 {
-                let answer = walker.say(&any_command(&mut rng, &named.robot));
+                let answer = walker.say(&random_command(&mut rng, &named.robot));
                 *(if answer.starts_with("ok") {
                     &mut done
                 } else {
                     &mut refused
                 }) += 1;
-                walker.run(rng.u32(..120));
+                walker.run_frames(rng.u32(..120));
             }
-            largest = largest.max(walker.jerk);
+            largest = largest.max(walker.largest_speed_change);
         }
         println!(
             "{}: {done} commands done, {refused} refused; speed changes by at most {largest:.0} of {:.0} deg/s",
@@ -47,15 +47,15 @@ fn every_command_comes_to_its_end_or_the_guard_says_why_not() {
         let mut rng = rng(2000 + n as u64);
         let mut arrived = 0;
         for _ in 0..3 * DIALOGUES {
-            let mut walker = Walker::new(named);
+            let mut walker = CheckedRobot::new(named);
             for _ in 0..3 {
-                walker.say(&any_command(&mut rng, robot));
-                walker.run(rng.u32(..60));
+                walker.say(&random_command(&mut rng, robot));
+                walker.run_frames(rng.u32(..60));
             }
             walker.say("stand");
-            let last = any_command(&mut rng, robot);
+            let last = random_command(&mut rng, robot);
             let answer = walker.say(&last);
-            walker.run(2 * settling_frames(robot));
+            walker.run_frames(2 * settling_frames(robot));
             if walker.motion().hazard().is_some() {
                 assert_eq!(walker.motion().activity(), Activity::Stop, "{name}: {last}");
                 continue;
@@ -87,9 +87,9 @@ fn a_command_that_is_refused_changes_nothing() {
         let mut rng = rng(3000 + n as u64);
         let mut refused = 0;
         for _ in 0..DIALOGUES {
-            let (mut asked, mut spared) = (Walker::new(named), Walker::new(named));
+            let (mut asked, mut spared) = (CheckedRobot::new(named), CheckedRobot::new(named));
             for _ in 0..8 {
-                let command = any_command(&mut rng, &named.robot);
+                let command = random_command(&mut rng, &named.robot);
                 let frames = rng.u32(..60);
                 let is_refused = asked.say(&command).starts_with("err");
                 if is_refused {
@@ -98,7 +98,12 @@ fn a_command_that_is_refused_changes_nothing() {
                     spared.say(&command);
                 }
                 for _ in 0..frames {
-                    assert_eq!(asked.frame(), spared.frame(), "{}: {command}", named.name);
+                    assert_eq!(
+                        asked.run_frame(),
+                        spared.run_frame(),
+                        "{}: {command}",
+                        named.name
+                    );
                     assert_eq!(asked.motion().activity(), spared.motion().activity());
                 }
             }
@@ -114,13 +119,13 @@ fn in_a_move_all_servos_do_the_same_share_of_their_ways_and_arrive_together() {
         let mut arrived = 0;
         for _ in 0..DIALOGUES {
             let goal = safe_pose(&mut rng, named.robot.firmware());
-            let mut walker = Walker::standing(named);
+            let mut walker = CheckedRobot::standing(named);
             if !walker.say(&walker.pose_command(&goal)).starts_with("ok") {
                 continue; // rounding to a hundredth of a degree put it beyond a limit
             }
             let mut poses = vec![walker.pose()];
             while walker.motion().activity() == Activity::Pose && poses.len() < 1000 {
-                walker.run(1);
+                walker.run_frames(1);
                 poses.push(walker.pose());
                 if poses[poses.len() - 1] == poses[poses.len() - 2] && poses.len() > 30 {
                     break;
@@ -149,22 +154,22 @@ fn in_a_move_all_servos_do_the_same_share_of_their_ways_and_arrive_together() {
 fn servos_wake_one_after_another_where_they_were_left() {
     for (n, named) in robots().iter().enumerate() {
         let calibration = named.robot.firmware().calibration();
-        let mut walker = Walker::new(named);
+        let mut walker = CheckedRobot::new(named);
         for held in [
             Pose::NEUTRAL,
             safe_pose(&mut rng(5000 + n as u64), named.robot.firmware()),
         ] {
             if held != Pose::NEUTRAL {
                 walker.say(&walker.pose_command(&held));
-                walker.run(settling_frames(&named.robot));
+                walker.run_frames(settling_frames(&named.robot));
                 walker.expect_ok("rest");
-                walker.run(10);
+                walker.run_frames(10);
                 walker.expect_ok("stand");
             }
             let held = walker.pose();
             let mut awake_since = [0; 4];
-            for frame in 1..=WAKING {
-                for (servo, width) in walker.frame().0.into_iter().enumerate() {
+            for frame in 1..=WAKING_FRAMES {
+                for (servo, width) in walker.run_frame().0.into_iter().enumerate() {
                     if width.0 > 0 && awake_since[servo] == 0 {
                         awake_since[servo] = frame;
                     }
@@ -175,7 +180,7 @@ fn servos_wake_one_after_another_where_they_were_left() {
             }
             // The servos wake a tenth of a second apart.
             assert_eq!(awake_since, [5, 10, 15, 20], "{}", named.name);
-            walker.run(settling_frames(&named.robot));
+            walker.run_frames(settling_frames(&named.robot));
         }
     }
 }
@@ -186,15 +191,15 @@ fn stop_freezes_and_rest_silences_the_very_next_frame_and_a_gait_restarts() {
         let mut rng = rng(6000 + n as u64);
         let robot = &named.robot;
         for _ in 0..DIALOGUES {
-            let mut walker = Walker::standing(named);
+            let mut walker = CheckedRobot::standing(named);
             let gait = rng.usize(..robot.gaits().len());
             walker.expect_ok(&crate::frames::gait_command(&robot.gaits()[gait]));
-            walker.run(rng.u32(..200));
+            walker.run_frames(rng.u32(..200));
             let pose = walker.pose();
             let end = ["stop", "rest"][rng.usize(..2)];
             walker.expect_ok(end);
             for _ in 0..5 {
-                let silent = walker.frame().0.iter().all(|width| width.0 == 0);
+                let silent = walker.run_frame().0.iter().all(|width| width.0 == 0);
                 assert_eq!(silent, end == "rest", "{}", named.name);
                 assert_eq!(walker.pose(), pose, "{}", named.name);
                 assert_eq!(walker.motion().phase(), 0, "{}", named.name);
@@ -207,7 +212,7 @@ fn stop_freezes_and_rest_silences_the_very_next_frame_and_a_gait_restarts() {
                 .expect("a gait");
             let first = firmware.gait(id).pose(firmware.waves(), 0);
             let begins = (0..2 * settling_frames(robot)).any(|_| {
-                walker.run(1);
+                walker.run_frames(1);
                 walker.motion().phase() == 0 && walker.pose() == first
             });
             assert!(begins, "{}: {}", named.name, robot.gaits()[gait].name());

@@ -8,7 +8,7 @@ use lizard_core::numbers::units::Sweep;
 use lizard_host_tests::{Named, rng, robots};
 use lizard_robot::{CoreRobot, Robot};
 
-use crate::frames::{Walker, gait_command, settling_frames};
+use crate::frames::{CheckedRobot, gait_command, settling_frames};
 use crate::truth::{Verdict, angles, is_safe, pose_within};
 
 /// Number of random pairs tried for each robot, since some robots have no unsafe path between safe poses.
@@ -17,7 +17,7 @@ const TRIES: usize = 6000;
 const PATHS: usize = 12;
 
 /// Returns up to [`PATHS`] pairs of safe poses whose straight path is unsafe by floating point.
-fn crossings(rng: &mut Rng, robot: &Robot) -> Vec<[Pose; 2]> {
+fn pairs_with_unsafe_path(rng: &mut Rng, robot: &Robot) -> Vec<[Pose; 2]> {
     let calibration = robot.firmware().calibration();
     let edge = |rng: &mut Rng| {
         // Two cranks of one five-bar or of one side near a limit, the others at neutral.
@@ -64,20 +64,20 @@ fn the_last_safe_pose_is_held_and_the_reason_is_reported_once() {
     let mut held = 0;
     for (n, named) in robots().iter().enumerate() {
         let Named { name, robot } = named;
-        for [from, to] in crossings(&mut rng(7000 + n as u64), robot) {
-            let mut walker = Walker::standing(named);
+        for [from, to] in pairs_with_unsafe_path(&mut rng(7000 + n as u64), robot) {
+            let mut walker = CheckedRobot::standing(named);
             // Rounding to a hundredth of a degree may put the command beyond the limit.
             if !walker.say(&walker.pose_command(&from)).starts_with("ok") {
                 continue;
             }
-            walker.run(settling_frames(robot));
+            walker.run_frames(settling_frames(robot));
             if walker.motion().hazard().is_some()
                 || !walker.say(&walker.pose_command(&to)).starts_with("ok")
             {
                 continue;
             }
             let from = walker.pose();
-            walker.run(settling_frames(robot)); // checks that every frame is safe
+            walker.run_frames(settling_frames(robot)); // checks that every frame is safe
             // A fast move may pass a narrow unsafe stretch between two frames.
             let Some(hazard) = walker.motion().hazard() else {
                 assert!(walker.pose().largest_turn_to(&to) <= 1, "{name}");
@@ -85,7 +85,7 @@ fn the_last_safe_pose_is_held_and_the_reason_is_reported_once() {
             };
             held += 1;
             assert_eq!(walker.motion().activity(), Activity::Stop, "{name}");
-            let printed = walker.read();
+            let printed = walker.take_output_lines();
             assert_eq!(printed.len(), 1, "{name}: {printed:?}");
             assert!(
                 printed[0].starts_with("# held in the last safe pose: "),
@@ -93,13 +93,13 @@ fn the_last_safe_pose_is_held_and_the_reason_is_reported_once() {
             );
             // The cause lies on the rest of the path.
             assert!(
-                lies_ahead(robot.firmware(), from, to, walker.pose(), hazard),
+                breaks_condition_ahead(robot.firmware(), from, to, walker.pose(), hazard),
                 "{name}: {hazard:?}"
             );
             let pose = walker.pose();
-            walker.run(20);
+            walker.run_frames(20);
             assert_eq!(walker.pose(), pose, "{name}");
-            assert!(walker.read().is_empty(), "{name}: told once");
+            assert!(walker.take_output_lines().is_empty(), "{name}: told once");
             assert!(walker.say("status").contains(" guard=held "), "{name}");
             // The robot can move back, unless the guard stops it again.
             assert!(
@@ -116,7 +116,7 @@ fn the_last_safe_pose_is_held_and_the_reason_is_reported_once() {
 }
 
 /// True if the rest of the path breaks the condition that a hazard names.
-fn lies_ahead(
+fn breaks_condition_ahead(
     firmware: &CoreRobot,
     from: Pose,
     to: Pose,
@@ -138,7 +138,7 @@ fn lies_ahead(
         let beyond = held.largest_turn_to(&from) <= pose.largest_turn_to(&from) + 1;
         beyond
             && Clearance::of(firmware, &pose)
-                .hazard(firmware)
+                .first_hazard(firmware)
                 .is_some_and(same)
     })
 }
@@ -148,17 +148,17 @@ fn a_gait_that_is_under_way_never_meets_the_guard() {
     let (mut walked, mut barred) = (0, 0);
     for named in robots() {
         for gait in named.robot.gaits() {
-            let mut walker = Walker::standing(named);
+            let mut walker = CheckedRobot::standing(named);
             walker.expect_ok(&gait_command(gait));
             // The path to the gait's first pose may contain an unsafe pose.
-            walker.run(settling_frames(&named.robot));
+            walker.run_frames(settling_frames(&named.robot));
             if walker.motion().hazard().is_some() {
                 println!("{}: the way to {} is barred", named.name, gait.name());
                 barred += 1;
                 continue;
             }
             walked += 1;
-            walker.run((2.0 * gait.period() * 50.0) as u32);
+            walker.run_frames((2.0 * gait.period() * 50.0) as u32);
             let hazard = walker.motion().hazard();
             assert!(
                 hazard.is_none(),

@@ -13,10 +13,10 @@ use crate::truth::{angles, is_safe};
 
 /// The head's crank angles where the two crank tips coincide, deg. Only there do the
 /// couplers fold onto each other, and the head swings freely.
-const MEET: [f64; 2] = [70.52878, 109.47122];
+const CRANK_TIPS_COINCIDE: [f64; 2] = [70.52878, 109.47122];
 
 /// A guard built on the printed conditions.
-struct Printed {
+struct PrintedConditions {
     /// |sin(theta2 + theta3)|.
     head: f64,
     /// |sin(theta6 + theta7)|.
@@ -25,7 +25,7 @@ struct Printed {
     left: f64,
 }
 
-impl Printed {
+impl PrintedConditions {
     fn of(pose: &Pose) -> Self {
         let solution = paper()
             .lizard()
@@ -39,13 +39,13 @@ impl Printed {
         }
     }
 
-    fn stops(&self) -> bool {
+    fn stops_robot(&self) -> bool {
         let limit = paper().limits().type2;
         self.head < limit || self.tail < limit || self.left < limit
     }
 }
 
-fn head_at(theta1: f64, theta4: f64) -> Pose {
+fn pose_with_head_at(theta1: f64, theta4: f64) -> Pose {
     let mut pose = Pose::NEUTRAL;
     for (servo, degrees) in [theta1, theta4].into_iter().enumerate() {
         let centideg = (100.0 * degrees).round() as i32;
@@ -57,9 +57,9 @@ fn head_at(theta1: f64, theta4: f64) -> Pose {
 
 #[test]
 fn the_conditions_printed_in_the_paper_would_stop_the_robot_at_home() {
-    let home = Printed::of(&Pose::NEUTRAL);
+    let home = PrintedConditions::of(&Pose::NEUTRAL);
     assert!(home.head < 1e-3 && home.tail < 1e-3 && home.left < 1e-3);
-    assert!(home.stops());
+    assert!(home.stops_robot());
     assert!(is_safe(paper().firmware(), &Pose::NEUTRAL));
 }
 
@@ -70,7 +70,7 @@ fn the_condition_printed_in_the_paper_calls_every_symmetric_head_singular() {
         let pose = Pose([sweep, -sweep, 0, 0].map(Sweep));
         if is_safe(paper().firmware(), &pose) {
             // Neutral angles are rounded to the core's step of 0.0055 deg.
-            assert!(Printed::of(&pose).head < 1e-3, "{sweep}");
+            assert!(PrintedConditions::of(&pose).head < 1e-3, "{sweep}");
             stopped += 1;
         }
     }
@@ -83,7 +83,7 @@ fn the_conditions_printed_in_the_paper_would_stop_every_gait() {
     for id in GaitId::all(firmware.gait_count()) {
         let gait = firmware.gait(id);
         let stopped = (0..256u32)
-            .filter(|n| Printed::of(&gait.pose(firmware.waves(), n << 16)).stops())
+            .filter(|n| PrintedConditions::of(&gait.pose(firmware.waves(), n << 16)).stops_robot())
             .count();
         assert!(stopped > 64, "{id:?}: {stopped} of 256");
     }
@@ -94,8 +94,8 @@ fn the_papers_condition_misses_the_real_singularity_and_the_guard_does_not() {
     let mut best = 0.0f64;
     for around in 0..360 {
         let (dy, dx) = f64::from(around).to_radians().sin_cos();
-        let pose = head_at(MEET[0] + dx, MEET[1] + dy);
-        best = best.max(Printed::of(&pose).head);
+        let pose = pose_with_head_at(CRANK_TIPS_COINCIDE[0] + dx, CRANK_TIPS_COINCIDE[1] + dy);
+        best = best.max(PrintedConditions::of(&pose).head);
         assert_eq!(
             refused_margin(&pose),
             Some(Margin::Type2(End::Head)),
@@ -105,7 +105,7 @@ fn the_papers_condition_misses_the_real_singularity_and_the_guard_does_not() {
     println!("a degree beside the singularity, |sin(theta2 + theta3)| is up to {best:.3}");
     assert!(best > 0.95);
     // The guard also refuses the pose exactly at the singularity, and its mirror image in the tail.
-    let head = head_at(MEET[0], MEET[1]);
+    let head = pose_with_head_at(CRANK_TIPS_COINCIDE[0], CRANK_TIPS_COINCIDE[1]);
     assert_eq!(refused_margin(&head), Some(Margin::Type2(End::Head)));
     let Pose([a1, a2, ..]) = head;
     let tail = Pose([Sweep(0), Sweep(0), Sweep(-a2.0), Sweep(-a1.0)]);
@@ -115,7 +115,7 @@ fn the_papers_condition_misses_the_real_singularity_and_the_guard_does_not() {
 /// Returns the margin that the guard finds too small; `None` if it finds none.
 fn refused_margin(pose: &Pose) -> Option<Margin> {
     let firmware = paper().firmware();
-    match Clearance::of(firmware, pose).hazard(firmware) {
+    match Clearance::of(firmware, pose).first_hazard(firmware) {
         Some(Hazard::Margin { margin, .. }) => Some(margin),
         _ => None,
     }

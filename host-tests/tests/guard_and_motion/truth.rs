@@ -36,7 +36,7 @@ pub const MARGINS: [Margin; 10] = [
 ];
 
 /// The five-bar of each of the six margins that are not a leg's: 0 is the head, 1 the tail.
-pub const ENDS: [usize; 6] = [0, 1, 0, 0, 1, 1];
+pub const FIVE_BAR_OF_MARGIN: [usize; 6] = [0, 1, 0, 0, 1, 1];
 
 /// Converts an angle of the core to degrees, 0..360.
 pub fn degrees(angle: Angle) -> f64 {
@@ -60,7 +60,7 @@ pub fn angles(firmware: &CoreRobot, pose: &Pose) -> [f64; 4] {
 
 /// The values of every safety condition at a pose, computed in floating point.
 #[derive(Clone, Copy, Debug)]
-pub struct Truth {
+pub struct ExactConditions {
     /// Sines, in the order of [`MARGINS`]. The type-2 margins have the sign of K2: negative for
     /// crossed crank tips.
     pub margins: [f64; 10],
@@ -85,10 +85,10 @@ pub enum Verdict {
     /// Beyond some limit by more than the band.
     Unsafe,
     /// Too near to a limit to decide.
-    Between,
+    Undecided,
 }
 
-impl Truth {
+impl ExactConditions {
     /// Computes every condition at chassis angles in degrees.
     ///
     /// # Errors
@@ -106,12 +106,14 @@ impl Truth {
         let firmware = robot.firmware();
         let side = |side| STEPS_BAND / per_mm(firmware.side(side).scale);
         let end = |end| STEPS_BAND / per_mm(firmware.end(end).bars().scale());
-        let [head, tail] = [(End::Head, &solution.head), (End::Tail, &solution.tail)]
-            .map(|(of, pose)| couplers(robot, of, pose.gap.length(), pose.type2.abs(), end(of)));
+        let [head, tail] =
+            [(End::Head, &solution.head), (End::Tail, &solution.tail)].map(|(of, pose)| {
+                five_bar_bands(robot, of, pose.gap.length(), pose.type2.abs(), end(of))
+            });
         let leg = MARGIN_BAND;
         let mut broken = [false; 12];
         for violation in robot.limits().violations(&solution) {
-            broken[index_of(violation.what)] = true;
+            broken[index_of(violation.check)] = true;
         }
         Ok(Self {
             broken,
@@ -140,7 +142,7 @@ impl Truth {
 
     /// Returns the distance of each margin, then of each stroke, from its limit, in bands, positive where
     /// safe. As in the guard, crossed crank tips break the type-2 limit.
-    pub fn clear_by(&self) -> [f64; 12] {
+    pub fn distances_from_limits(&self) -> [f64; 12] {
         let Limits {
             type2,
             type1,
@@ -188,7 +190,7 @@ fn index_of(check: Check) -> usize {
 /// of the error of the guard's arithmetic and of the rounding by `step` mm of the distance `tips` between
 /// the crank tips, mm. Near a singularity, where `type2` is small, such a step turns the couplers by a large
 /// angle.
-fn couplers(robot: &Robot, end: End, tips: f64, type2: f64, step: f64) -> [f64; 3] {
+fn five_bar_bands(robot: &Robot, end: End, tips: f64, type2: f64, step: f64) -> [f64; 3] {
     let bars = robot.lizard().end(match end {
         End::Head => lizard_kinematics::End::Head,
         End::Tail => lizard_kinematics::End::Tail,
@@ -201,16 +203,19 @@ fn couplers(robot: &Robot, end: End, tips: f64, type2: f64, step: f64) -> [f64; 
 impl Verdict {
     /// Judges the pose at chassis angles in degrees.
     pub fn of(robot: &Robot, angles: [f64; 4]) -> Self {
-        let Ok(truth) = Truth::of(robot, angles) else {
+        let Ok(truth) = ExactConditions::of(robot, angles) else {
             return Self::Unsafe;
         };
-        let smallest = truth.clear_by().into_iter().fold(f64::INFINITY, f64::min);
+        let smallest = truth
+            .distances_from_limits()
+            .into_iter()
+            .fold(f64::INFINITY, f64::min);
         if smallest > 1.0 {
             Self::Safe
         } else if smallest < -1.0 {
             Self::Unsafe
         } else {
-            Self::Between
+            Self::Undecided
         }
     }
 }
@@ -226,13 +231,13 @@ pub fn open_end(fault: &Infeasible) -> Option<usize> {
 
 /// The largest and the root mean square of many errors.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Spread {
+pub struct ErrorStatistics {
     pub max: f64,
     squares: f64,
     count: f64,
 }
 
-impl Spread {
+impl ErrorStatistics {
     pub fn add(&mut self, error: f64) {
         self.max = self.max.max(error.abs());
         self.squares += error * error;
@@ -240,7 +245,7 @@ impl Spread {
     }
 }
 
-impl fmt::Display for Spread {
+impl fmt::Display for ErrorStatistics {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let rms = (self.squares / self.count.max(1.0)).sqrt();
         write!(f, "max {:.5} rms {rms:.5}", self.max)
@@ -272,5 +277,7 @@ pub fn safe_pose(rng: &mut Rng, firmware: &CoreRobot) -> Pose {
 
 /// True if the guard accepts a pose.
 pub fn is_safe(firmware: &CoreRobot, pose: &Pose) -> bool {
-    Clearance::of(firmware, pose).hazard(firmware).is_none()
+    Clearance::of(firmware, pose)
+        .first_hazard(firmware)
+        .is_none()
 }

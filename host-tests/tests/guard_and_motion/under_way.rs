@@ -4,7 +4,7 @@ use lizard_core::numbers::gaits::GaitId;
 use lizard_core::numbers::units::CYCLE;
 use lizard_host_tests::{Named, rng, robots};
 
-use crate::frames::{Walker, gait_command, settling_frames};
+use crate::frames::{CheckedRobot, gait_command, settling_frames};
 use crate::gaits::{FULL_PACE, gaits};
 
 #[test]
@@ -38,9 +38,9 @@ fn every_speed_gives_its_share_of_every_gaits_pace() {
     let (mut walked, mut barred) = (0, 0);
     for named in robots() {
         for float in named.robot.gaits().iter().skip(1) {
-            let mut walker = Walker::standing(named);
+            let mut walker = CheckedRobot::standing(named);
             walker.expect_ok(&gait_command(float));
-            walker.run(settling_frames(&named.robot));
+            walker.run_frames(settling_frames(&named.robot));
             if walker.motion().hazard().is_some() {
                 barred += 1; // the path to its first pose is unsafe
                 continue;
@@ -48,11 +48,11 @@ fn every_speed_gives_its_share_of_every_gaits_pace() {
             walked += 1;
             for percent in [10, 100, rng.u8(11..100)] {
                 walker.expect_ok(&format!("speed {percent}"));
-                walker.run(10);
+                walker.run_frames(10);
                 let mut advance = 0i64;
                 for _ in 0..FRAMES {
                     let before = walker.motion().phase();
-                    walker.run(1);
+                    walker.run_frames(1);
                     // A frame advances by less than half a cycle, so the difference wraps around without ambiguity.
                     let step = walker.motion().phase().wrapping_sub(before) << 8;
                     advance += i64::from(step as i32 >> 8);
@@ -82,7 +82,8 @@ fn every_speed_gives_its_share_of_every_gaits_pace() {
 fn a_gait_that_is_ordered_again_continues() {
     for named in robots() {
         for gait in named.robot.gaits() {
-            let (mut asked, mut spared) = (Walker::standing(named), Walker::standing(named));
+            let (mut asked, mut spared) =
+                (CheckedRobot::standing(named), CheckedRobot::standing(named));
             for frame in 0..150 {
                 if frame % 7 == 0 {
                     asked.expect_ok(&gait_command(gait));
@@ -91,8 +92,8 @@ fn a_gait_that_is_ordered_again_continues() {
                     spared.expect_ok(&gait_command(gait));
                 }
                 assert_eq!(
-                    asked.frame(),
-                    spared.frame(),
+                    asked.run_frame(),
+                    spared.run_frame(),
                     "{}: {}",
                     named.name,
                     gait.name()
@@ -112,18 +113,18 @@ fn every_frame_of_a_gait_under_way_is_a_pose_of_it() {
             .iter()
             .zip(GaitId::all(named.robot.gaits().len()))
         {
-            let mut walker = Walker::standing(named);
+            let mut walker = CheckedRobot::standing(named);
             walker.expect_ok(&gait_command(gait));
             let firmware = named.robot.firmware();
             let table = firmware.gait(id);
-            walker.run(settling_frames(&named.robot));
+            walker.run_frames(settling_frames(&named.robot));
             if walker.motion().hazard().is_some() {
                 barred += 1; // the path to its first pose is unsafe
                 continue;
             }
             walked += 1;
             for _ in 0..100 {
-                walker.run(1);
+                walker.run_frames(1);
                 let phase = walker.motion().phase();
                 assert_eq!(
                     walker.pose(),

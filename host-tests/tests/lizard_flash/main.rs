@@ -14,7 +14,7 @@ use std::sync::LazyLock;
 
 use desk::{BOOT_LOADER_START, Desk, loader};
 use lizard_core::memory::copies::REST_POSE;
-use lizard_core::memory::record::{LENGTH, SIZE};
+use lizard_core::memory::record::{RECORD_BYTES, SIZE};
 use lizard_core::numbers::section::START;
 use lizard_host::firmware::label;
 use lizard_host::sim::frame::servo_pins;
@@ -56,7 +56,7 @@ fn firmware() -> Vec<u8> {
 }
 
 /// Returns a robot other than the robot under test, and the name by which `lizard` knows it.
-fn another() -> (&'static str, Robot) {
+fn another_robot() -> (&'static str, Robot) {
     let name = match robot().name() {
         "large" => "unequal",
         _ => "large",
@@ -76,7 +76,7 @@ fn lizard_flash(desk: &Desk, arguments: &[&str]) -> Shell {
 /// Checks that an upload has left the EEPROM alone, except for the rest pose. The firmware itself may write
 /// the rest pose, for example when `lizard` on a slow machine resets the board several times.
 fn assert_kept(desk: &Desk, kept: &[u8; SIZE]) {
-    let rest = usize::from(REST_POSE.0)..usize::from(REST_POSE.0 + LENGTH);
+    let rest = usize::from(REST_POSE.0)..usize::from(REST_POSE.0 + RECORD_BYTES);
     let now = desk.uno.eeprom();
     let changed = |at: &usize| now[*at] != kept[*at] && !rest.contains(at);
     let changes: Vec<usize> = (0..SIZE).filter(changed).collect();
@@ -92,7 +92,7 @@ fn unplug(desk: &mut Desk) {
 }
 
 /// Runs the board until `lizard` has exited. Returns the last screen.
-fn end(desk: &mut Desk, shell: &Shell) -> String {
+fn run_to_exit(desk: &mut Desk, shell: &Shell) -> String {
     desk.run_until_exit(shell);
     shell.last_screen()
 }
@@ -100,14 +100,14 @@ fn end(desk: &mut Desk, shell: &Shell) -> String {
 /// Waits for a successful upload, and checks that the robot reports its firmware. Returns the
 /// screen.
 fn expect_success(desk: &mut Desk, shell: &Shell) -> String {
-    let screen = end(desk, shell);
+    let screen = run_to_exit(desk, shell);
     assert!(screen.contains("\n# lizard "), "{screen}");
     desk.assert_written(&firmware());
     screen
 }
 
 /// Begins an upload to a board, and waits until some pages of the new code are written.
-fn begin(desk: &mut Desk) -> Shell {
+fn begin_upload(desk: &mut Desk) -> Shell {
     let shell = lizard_flash(desk, &[]);
     let half = desk.run_until(|uno| uno.flash()[0x1000] != 0xff || shell.has_ended());
     let screen = shell.screen();
@@ -117,7 +117,7 @@ fn begin(desk: &mut Desk) -> Shell {
 }
 
 /// Returns a board whose flash has the firmware, set without an upload.
-fn with_firmware() -> Desk {
+fn board_with_firmware() -> Desk {
     let mut desk = Desk::with_a_new_board();
     desk.uno.set_flash(0, &firmware());
     desk
@@ -150,7 +150,7 @@ fn a_board_whose_program_never_stops_talking_is_written_and_keeps_its_eeprom() {
 
 #[test]
 fn a_board_that_has_the_image_is_left_as_it_is() {
-    let mut desk = with_firmware();
+    let mut desk = board_with_firmware();
     let shell = lizard_flash(&desk, &[]);
     let screen = expect_success(&mut desk, &shell);
     let already = format!("robot {} already", label(robot().firmware()));
@@ -160,7 +160,7 @@ fn a_board_that_has_the_image_is_left_as_it_is() {
 
 #[test]
 fn one_page_that_differs_is_written_alone() {
-    let mut desk = with_firmware();
+    let mut desk = board_with_firmware();
     let old = desk.uno.flash()[0x2005];
     desk.uno.set_flash(0x2005, &[old ^ 0x10]);
     let shell = lizard_flash(&desk, &[]);
@@ -176,9 +176,9 @@ fn one_page_that_differs_is_written_alone() {
 fn a_board_unplugged_in_the_middle_does_nothing_until_it_is_written_again() {
     let mut desk = Desk::with_a_new_board();
     desk.uno.set_flash(0, &TALKER.flash());
-    let shell = begin(&mut desk);
+    let shell = begin_upload(&mut desk);
     unplug(&mut desk);
-    let screen = end(&mut desk, &shell);
+    let screen = run_to_exit(&mut desk, &shell);
     assert!(screen.contains("the port is gone"), "{screen}");
     assert!(
         screen.contains("half a program now, and does nothing"),
@@ -204,7 +204,7 @@ fn a_board_unplugged_in_the_middle_does_nothing_until_it_is_written_again() {
 #[test]
 fn a_board_whose_button_is_pressed_in_the_middle_is_called_again_and_written() {
     let mut desk = Desk::with_a_new_board();
-    let shell = begin(&mut desk);
+    let shell = begin_upload(&mut desk);
     desk.uno.reset();
     let screen = expect_success(&mut desk, &shell);
     assert!(screen.contains("is reset for another attempt"), "{screen}");
@@ -236,7 +236,7 @@ fn a_board_without_a_boot_loader_that_answers_is_explained() {
     // A boot loader that does nothing: `rjmp .-2`.
     desk.uno.set_flash(BOOT_LOADER_START as u16, &[0xff, 0xcf]);
     let shell = lizard_flash(&desk, &[]);
-    let screen = end(&mut desk, &shell);
+    let screen = run_to_exit(&mut desk, &shell);
     assert!(
         screen.contains("no boot loader answers. Is it a UNO or a Nano?"),
         "{screen}"

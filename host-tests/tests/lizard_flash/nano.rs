@@ -15,7 +15,7 @@ fn an_old_nano_is_found_at_its_own_speed_written_and_started() {
     let mut desk = old_nano();
     let before = desk.uno.flash().to_vec();
     let shell = lizard_flash(&desk, &["--robot", "large"]);
-    let screen = end(&mut desk, &shell);
+    let screen = run_to_exit(&mut desk, &shell);
     assert!(
         screen.contains("no answer at 115200 baud; calling again at 57600 baud"),
         "{screen}"
@@ -29,7 +29,7 @@ fn an_old_nano_is_found_at_its_own_speed_written_and_started() {
 
     // Then replaces only the robot. This boot loader never resets the chip by itself.
     let shell = lizard_flash(&desk, &["--only-robot", "--robot", "paper"]);
-    let screen = end(&mut desk, &shell);
+    let screen = run_to_exit(&mut desk, &shell);
     assert!(screen.contains("robot large "), "{screen}");
     assert!(screen.contains("\n# lizard "), "{screen}");
     let paper = Robot::load(root().join("robots/paper.toml")).expect("it is right");
@@ -41,7 +41,7 @@ fn a_robot_too_large_for_an_old_nano_is_refused_and_its_boot_loader_kept() {
     let mut desk = old_nano();
     let before = desk.uno.flash().to_vec();
     let shell = lizard_flash(&desk, &["--robot", "own-gaits"]);
-    let screen = end(&mut desk, &shell);
+    let screen = run_to_exit(&mut desk, &shell);
     assert!(
         screen.contains("a Nano has 30720 before its boot section"),
         "{screen}"
@@ -69,9 +69,9 @@ fn after_a_hang_an_old_nano_moves_no_servo_until_its_power_is_cut() {
     // The boot loader leaves the watchdog on, which resets the chip again before the boot loader ends:
     // the RESET pin does not clear WDRF, and while WDRF is set, WDE stays set (data sheet, 11.9.2).
     desk.uno.reset();
-    let resets = desk.uno.resets();
+    let resets = desk.uno.watchdog_resets();
     desk.uno.run_ms(3000);
-    let again = desk.uno.resets() - resets;
+    let again = desk.uno.watchdog_resets() - resets;
     assert!(
         (150..200).contains(&again),
         "{again}: one every 16 ms or so"

@@ -14,8 +14,8 @@ fn run_line(desk: &mut Desk, line: &str, ms: u64) -> String {
 
 #[test]
 fn a_robot_alone_is_written_behind_the_firmware_and_the_trims_are_kept() {
-    let (name, other) = another();
-    let mut desk = with_firmware();
+    let (name, other) = another_robot();
+    let mut desk = board_with_firmware();
     desk.uno.power_cycle();
     assert!(run_line(&mut desk, "", 2500).contains("# lizard "));
     assert!(run_line(&mut desk, "trim 1 3.5\n", 200).contains("ok"));
@@ -26,7 +26,7 @@ fn a_robot_alone_is_written_behind_the_firmware_and_the_trims_are_kept() {
     let shell = lizard_flash(&desk, &["--only-robot", "--robot", name]);
     desk.wait_for_text(&shell, "written and verified");
     assert_kept(&desk, &kept);
-    let screen = end(&mut desk, &shell);
+    let screen = run_to_exit(&mut desk, &shell);
     let [its, now] = [robot(), &other].map(|robot| label(robot.firmware()));
     assert!(screen.contains(&format!(" robot {its}\n")), "{screen}");
     let banner = screen.lines().find(|line| line.starts_with("# lizard "));
@@ -39,7 +39,7 @@ fn a_robot_alone_is_written_behind_the_firmware_and_the_trims_are_kept() {
 
     // Then a script writes the first robot again, whose trims are unchanged.
     let shell = lizard_flash(&desk, &["--only-robot", "--json"]);
-    let screen = self::end(&mut desk, &shell);
+    let screen = self::run_to_exit(&mut desk, &shell);
     let (name, hash) = its.split_once(' ').expect("name and hash");
     let version = env!("CARGO_PKG_VERSION");
     let object =
@@ -55,8 +55,8 @@ fn a_robot_alone_is_written_behind_the_firmware_and_the_trims_are_kept() {
 
 #[test]
 fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
-    let (name, other) = another();
-    let mut desk = with_firmware();
+    let (name, other) = another_robot();
+    let mut desk = board_with_firmware();
     let words = ["--only-robot", "--robot", name];
     let shell = lizard_flash(&desk, &words);
     let section = other.section();
@@ -68,7 +68,7 @@ fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
     });
     assert!(half && !shell.has_ended(), "{}", shell.screen());
     unplug(&mut desk);
-    let screen = end(&mut desk, &shell);
+    let screen = run_to_exit(&mut desk, &shell);
     assert!(screen.contains("the port is gone"), "{screen}");
     assert!(screen.contains("half a robot now"), "{screen}");
 
@@ -89,7 +89,7 @@ fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
     unplug(&mut desk);
 
     let shell = lizard_flash(&desk, &words);
-    let screen = end(&mut desk, &shell);
+    let screen = run_to_exit(&mut desk, &shell);
     assert!(screen.contains(" without a robot\n"), "{screen}");
     assert!(
         screen.contains(&format!(" robot {}", label(other.firmware()))),
@@ -101,12 +101,12 @@ fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
 
 #[test]
 fn a_robot_alone_is_not_written_behind_another_program() {
-    let mut desk = with_firmware();
+    let mut desk = board_with_firmware();
     // The flash is as avrdude leaves it after a sketch: only the sketch's pages differ.
     desk.uno.set_flash(0, &TALKER.flash());
     let before = desk.uno.flash().to_vec();
     let shell = lizard_flash(&desk, &["--only-robot"]);
-    let screen = end(&mut desk, &shell);
+    let screen = run_to_exit(&mut desk, &shell);
     assert!(screen.contains("the board has another program"), "{screen}");
     assert!(screen.contains("Nothing was written"), "{screen}");
     assert!(desk.uno.flash() == before);
@@ -114,8 +114,8 @@ fn a_robot_alone_is_not_written_behind_another_program() {
 
 #[test]
 fn avrdude_writes_the_robot_that_lizard_image_has_made() {
-    let (name, other) = another();
-    let mut desk = with_firmware();
+    let (name, other) = another_robot();
+    let mut desk = board_with_firmware();
     let folder = tempfile::tempdir().expect("a folder");
     let hex = folder.path().join("robot.hex").display().to_string();
     let lizard = std::env::var("LIZARD").expect("`make flash-test` compiles the program");
@@ -129,13 +129,13 @@ fn avrdude_writes_the_robot_that_lizard_image_has_made() {
         &hex,
     ];
     let shell = Shell::start(&lizard, &words, &[]);
-    end(&mut desk, &shell);
+    run_to_exit(&mut desk, &shell);
     let write = format!("flash:w:{hex}:i");
     let port = desk.name();
     let options = ["-D", "-c", "arduino", "-p", "atmega328p", "-b", "115200"];
     let words = [&options[..], &["-P", &port, "-U", &write]].concat();
     let shell = Shell::start("avrdude", &words, &[]);
-    let screen = end(&mut desk, &shell);
+    let screen = run_to_exit(&mut desk, &shell);
     assert!(screen.contains("bytes of flash verified"), "{screen}");
     let end = usize::from(START) + other.section().len();
     assert!(desk.uno.flash()[..end] == firmware_of(&other)[..end]);

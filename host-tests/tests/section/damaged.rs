@@ -13,7 +13,7 @@ use lizard_core::numbers::limits::Limits;
 use lizard_core::numbers::robot::Robot;
 use lizard_core::numbers::section::{Damage, Header, MAGIC, Numbers, Region, SPACE, seal};
 use lizard_core::numbers::units::{Sine, Sweep, Width};
-use lizard_core::virtual_board::Running;
+use lizard_core::virtual_board::RunningRobot;
 use lizard_host_tests::rng;
 use lizard_robot::flash;
 
@@ -23,7 +23,7 @@ use crate::sections;
 const FORMAT: std::ops::Range<usize> = 4..6;
 const LENGTH: std::ops::Range<usize> = 6..8;
 
-fn damage(section: &[u8]) -> Option<Damage> {
+fn find_damage(section: &[u8]) -> Option<Damage> {
     Robot::open(Region::new(section)).err()
 }
 
@@ -37,11 +37,11 @@ fn erased_after(section: &[u8]) -> Vec<u8> {
 #[test]
 fn every_robot_is_read_with_anything_behind_its_section() {
     for (named, section) in sections() {
-        assert_eq!(damage(section), None, "{}", named.name);
+        assert_eq!(find_damage(section), None, "{}", named.name);
         for filler in [0, 0x55, 0xff] {
             let mut flash = section.clone();
             flash.resize(SPACE.into(), filler);
-            assert_eq!(damage(&flash), None, "{} before {filler}", named.name);
+            assert_eq!(find_damage(&flash), None, "{} before {filler}", named.name);
         }
     }
 }
@@ -63,7 +63,12 @@ fn a_section_with_any_one_bit_flipped_is_refused() {
                 at if FORMAT.contains(&at) => Damage::Format,
                 _ => Damage::Damaged,
             };
-            assert_eq!(damage(&section), Some(expected), "{} bit {bit}", named.name);
+            assert_eq!(
+                find_damage(&section),
+                Some(expected),
+                "{} bit {bit}",
+                named.name
+            );
             section[bit / 8] ^= 1 << (bit % 8);
         }
     }
@@ -75,11 +80,15 @@ fn a_section_that_ends_at_any_byte_is_refused() {
     for (named, section) in sections() {
         for length in 0..section.len() {
             let cut = &section[..length];
-            assert!(damage(cut).is_some(), "{} cut at {length}", named.name);
+            assert!(find_damage(cut).is_some(), "{} cut at {length}", named.name);
             // The last bytes may equal those of erased flash.
             if section[length..].iter().any(|byte| *byte != 0xff) {
                 let cut = erased_after(cut);
-                assert!(damage(&cut).is_some(), "{} erased at {length}", named.name);
+                assert!(
+                    find_damage(&cut).is_some(),
+                    "{} erased at {length}",
+                    named.name
+                );
             }
         }
     }
@@ -92,7 +101,7 @@ fn a_section_of_any_other_version_is_reported_as_such() {
     let own = u16::from_le_bytes([section[FORMAT.start], section[FORMAT.start + 1]]);
     for format in (0..=u16::MAX).filter(|format| *format != own) {
         section[FORMAT].copy_from_slice(&format.to_le_bytes());
-        assert_eq!(damage(&section), Some(Damage::Format), "{format}");
+        assert_eq!(find_damage(&section), Some(Damage::Format), "{format}");
     }
 }
 
@@ -100,9 +109,9 @@ fn a_section_of_any_other_version_is_reported_as_such() {
 fn erased_flash_and_flash_filled_with_one_byte_is_refused() {
     for byte in 0..=u8::MAX {
         let flash = [byte; SPACE as usize];
-        assert_eq!(damage(&flash), Some(Damage::Missing), "{byte}");
+        assert_eq!(find_damage(&flash), Some(Damage::Missing), "{byte}");
     }
-    assert_eq!(damage(&[]), Some(Damage::Missing));
+    assert_eq!(find_damage(&[]), Some(Damage::Missing));
 }
 
 #[test]
@@ -127,7 +136,7 @@ fn a_hundred_thousand_random_sections_are_refused() {
             put_bytes(&mut section, LENGTH.start, &length.to_le_bytes());
         }
         // One section in 65 536 has the right checksum, but its numbers are refused.
-        assert!(damage(&section).is_some(), "section {n}");
+        assert!(find_damage(&section).is_some(), "section {n}");
     }
 }
 
@@ -149,7 +158,7 @@ fn random_sections_with_a_valid_header_and_checksum_are_refused_or_harmless() {
         let length = section.len() as u16;
         put_bytes(&mut section, LENGTH.start, &length.to_le_bytes());
         seal(&mut section);
-        if damage(&section).is_none() {
+        if find_damage(&section).is_none() {
             check_motion(rng, &section);
         }
     }
@@ -163,10 +172,10 @@ fn robots_with_changed_numbers_are_refused_or_harmless() {
         let (_, section) = rng.choice(sections()).expect("sections");
         let mut section = section.clone();
         for _ in 0..=rng.usize(..4) {
-            change(rng, &mut section);
+            change_random_number(rng, &mut section);
         }
         seal(&mut section);
-        match damage(&section) {
+        match find_damage(&section) {
             Some(Damage::Impossible) => refused += 1,
             Some(other) => panic!("section {n} is {other:?}"),
             None => {
@@ -208,11 +217,11 @@ fn a_gait_that_would_leave_the_travel_is_held_within_it() {
         }
         let robot = Robot::open(flash(&content.section())).expect("nothing is out of range");
         for id in GaitId::all(robot.gait_count()).skip(1) {
-            let mut running = Running::power_on(robot);
-            frames(&mut running, 30);
+            let mut running = RunningRobot::power_on(robot);
+            run_frames(&mut running, 30);
             let name: String = robot.name(id).map(char::from).collect();
-            assert_eq!(running.say(&name), format!("ok {name}"));
-            frames(&mut running, 300);
+            assert_eq!(running.send_line(&name), format!("ok {name}"));
+            run_frames(&mut running, 300);
             if running.motion().activity() == Activity::Stop {
                 let hazard = running.motion().hazard();
                 assert!(matches!(hazard, Some(Hazard::Travel(_))), "{hazard:?}");
@@ -235,7 +244,7 @@ fn a_robot_whose_servo_cannot_reach_its_neutral_angle_is_refused() {
                 (calibration.min, calibration.max) = (Sweep(min), Sweep(max));
                 let reach = &mut content.reach[servo];
                 (reach.min, reach.max) = (Sweep(min), Sweep(max));
-                let found = damage(&content.section());
+                let found = find_damage(&content.section());
                 let name = &named.name;
                 assert_eq!(
                     found,
@@ -250,7 +259,7 @@ fn a_robot_whose_servo_cannot_reach_its_neutral_angle_is_refused() {
 /// Changes a random number of a section: of the servos, pins or limits, or of the parts behind `Numbers`, the
 /// curves, gaits, waveforms or maps. Leaves the bars and the offsets of the parts unchanged, which the device
 /// trusts because the host that made the section has checked them.
-fn change(rng: &mut Rng, section: &mut [u8]) {
+fn change_random_number(rng: &mut Rng, section: &mut [u8]) {
     let numbers = size_of::<Header>();
     let offset = match rng.u8(..4) {
         0 | 1 => numbers + rng.usize(offset_of!(Numbers, neutral)..offset_of!(Numbers, curves)),
@@ -276,8 +285,8 @@ fn change(rng: &mut Rng, section: &mut [u8]) {
 /// turns no servo beyond its travel.
 fn check_motion(rng: &mut Rng, section: &[u8]) {
     let robot = Robot::open(flash(section)).expect("it was accepted");
-    let mut running = Running::power_on(robot);
-    frames(&mut running, 30);
+    let mut running = RunningRobot::power_on(robot);
+    run_frames(&mut running, 30);
     let gaits: Vec<GaitId> = GaitId::all(robot.gait_count()).collect();
     for _ in 0..8 {
         let line = match rng.u8(..8) {
@@ -301,12 +310,12 @@ fn check_motion(rng: &mut Rng, section: &[u8]) {
         };
         running.board.send(line.as_bytes());
         running.board.send(b"\r");
-        frames(&mut running, 40);
+        run_frames(&mut running, 40);
     }
 }
 
 /// Runs frames and checks that no servo turns beyond its travel.
-fn frames(running: &mut Running, count: u32) {
+fn run_frames(running: &mut RunningRobot, count: u32) {
     for _ in 0..count {
         let pulses = running.frame();
         running.board.transmitter.text.clear();

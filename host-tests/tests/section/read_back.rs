@@ -9,7 +9,7 @@ use lizard_core::numbers::gaits::GaitId;
 use lizard_core::numbers::part::{End, Servo, Side};
 use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::robot::Robot;
-use lizard_core::numbers::section::{Header, MapHead, Numbers, Part, Region};
+use lizard_core::numbers::section::{Header, MapHeader, Numbers, Part, Region};
 use lizard_core::numbers::units::{Scale, Sine, Sweep};
 use lizard_host_tests::rng;
 use lizard_robot::{Robot as Toml, STEPS_PER_DEGREE};
@@ -87,7 +87,7 @@ fn the_servos_are_read_back() {
                 "{name}"
             );
             assert_eq!(robot.neutral()[index], robot.neutral_of(one));
-            let read = robot.servo(one);
+            let read = robot.calibration_of(one);
             assert_eq!(robot.calibration()[index], read);
             let us = |sweep: i32| servo.neutral_us + servo.us_per_degree * degrees(sweep);
             for sweep in read.min.0..=read.max.0 {
@@ -306,12 +306,12 @@ const PAIRS: [[usize; 2]; 4] = [[0, 1], [2, 3], [0, 3], [1, 2]];
 
 /// Reads the rows of the four maps: the row servo's sweeps in each row, and the column servo's sweeps that are
 /// certified in this row.
-fn maps(flash: Region<'_>) -> [Vec<[std::ops::RangeInclusive<i32>; 2]>; 4] {
+fn read_maps(flash: Region<'_>) -> [Vec<[std::ops::RangeInclusive<i32>; 2]>; 4] {
     let numbers = numbers(flash);
     let place = numbers.parts[Part::Rows as usize];
     let rows = flash.values::<[i8; 2]>(place.at, place.count);
     let mut next = 0;
-    numbers.maps.map(|MapHead { first, rows: count }| {
+    numbers.maps.map(|MapHeader { first, rows: count }| {
         let map = (0..i32::from(count)).map(|row| {
             let [smallest, most] = rows.get(next).expect("a row").load().map(i32::from);
             next += 1;
@@ -349,7 +349,7 @@ fn in_every_certified_cell_the_exact_guard_accepts_the_maps_conditions() {
         let robot = Robot::open(flash).expect("a robot");
         let travel = robot.calibration();
         with_maps += usize::from(numbers(flash).parts[Part::Rows as usize].count > 0);
-        for (pair, map) in maps(flash).into_iter().enumerate() {
+        for (pair, map) in read_maps(flash).into_iter().enumerate() {
             let servos = PAIRS[pair];
             for [row, columns] in map {
                 let cells = (*columns.start()..*columns.end()).step_by(128);
@@ -383,7 +383,7 @@ fn a_pose_in_all_four_maps_is_certified_and_the_guard_accepts_it() {
     for (named, section) in sections() {
         let flash = Region::new(section);
         let robot = Robot::open(flash).expect("a robot");
-        let maps = maps(flash);
+        let maps = read_maps(flash);
         let mut certified = 0;
         for n in 0..20_000 {
             let mut pose = Pose::NEUTRAL;
@@ -403,7 +403,7 @@ fn a_pose_in_all_four_maps_is_certified_and_the_guard_accepts_it() {
             assert_eq!(robot.is_certified(&pose), held, "{} {pose:?}", named.name);
             if held {
                 certified += 1;
-                let hazard = Clearance::of(&robot, &pose).hazard(&robot);
+                let hazard = Clearance::of(&robot, &pose).first_hazard(&robot);
                 assert_eq!(hazard, None, "{} {pose:?}", named.name);
             }
         }

@@ -48,8 +48,8 @@ impl Shell {
         let mut child = command.spawn().expect("the command starts");
         let screen = Arc::default();
         let readers = [
-            show(child.stdout.take().expect("it is piped"), &screen),
-            show(child.stderr.take().expect("it is piped"), &screen),
+            spawn_reader(child.stdout.take().expect("it is piped"), &screen),
+            spawn_reader(child.stderr.take().expect("it is piped"), &screen),
         ];
         // The pipe stays open, since ravedude's console reads without a pause at the end of its input.
         let keyboard = child.stdin.take().expect("it is piped");
@@ -125,7 +125,10 @@ impl Drop for Shell {
     }
 }
 
-fn show(mut pipe: impl Read + Send + 'static, screen: &Arc<Mutex<Vec<u8>>>) -> JoinHandle<()> {
+fn spawn_reader(
+    mut pipe: impl Read + Send + 'static,
+    screen: &Arc<Mutex<Vec<u8>>>,
+) -> JoinHandle<()> {
     let screen = Arc::clone(screen);
     thread::spawn(move || {
         let mut bytes = [0; 1024];

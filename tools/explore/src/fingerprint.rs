@@ -41,18 +41,18 @@ const RULES: &[Field] = &[
     ("Motion", "calibration", Skip),
     ("Count", "phase_covered", Coarse(|phase| phase >> 14)),
     ("Count", "phase", Skip),
-    ("Routine", "wait", Coarse(countdown)),
+    ("Routine", "frames_left", Coarse(countdown)),
     ("Stance", "sent", Coarse(|width| width >> 11)),
     ("Stance", "pose", Coarse(|sweep| sweep >> 10)),
-    ("Stance", "awake", Coarse(|frames| frames.div_ceil(5))),
+    ("Stance", "frames_awake", Coarse(|frames| frames.div_ceil(5))),
     ("Led", "frames", Skip),
     ("Safety", "is_lit", Skip),
-    ("Safety", "late", Skip),
+    ("Safety", "handled_late_edges", Skip),
     // The observer counts the silence, too, where it matters.
-    ("Safety", "silence", Skip),
-    ("Safety", "boot", Coarse(countdown)),
+    ("Safety", "silence_ms", Skip),
+    ("Safety", "boot_timer", Coarse(countdown)),
     ("Supply", "reading", Skip),
-    ("Supply", "frames", Coarse(countdown)),
+    ("Supply", "frames_at_other_level", Coarse(countdown)),
     ("Cycling", "gait", Skip),
     ("Cycling", "phase", Coarse(|phase| phase >> 22)),
     ("Cycling", "pace", Coarse(pace)),
@@ -65,7 +65,7 @@ const RULES: &[Field] = &[
 ];
 
 /// The fields that a refused command may change: they record that a line has arrived.
-const A_LINE_CAME: &[Field] = &[
+const LINE_ARRIVAL_FIELDS: &[Field] = &[
     ("Main", "ticks", Skip),
     ("Console", "line", Skip),
     ("Console", "silence", Skip),
@@ -73,8 +73,8 @@ const A_LINE_CAME: &[Field] = &[
     ("RateFinder", "wrong_bytes", Skip),
     ("RateFinder", "has_received", Skip),
     ("Console", "has_greeted", Skip),
-    ("Safety", "silence", Skip),
-    ("Safety", "boot", Skip),
+    ("Safety", "silence_ms", Skip),
+    ("Safety", "boot_timer", Skip),
     // A command shows that a program opened the port, which resets the board.
     ("Control", "has_heard_command", Skip),
     // From then on, the motion that `boot` began counts as ordered.
@@ -96,13 +96,13 @@ fn pace(pace: u64) -> u64 {
 }
 
 /// Returns a fingerprint that rounds fields or leaves them out as `RULES` says.
-pub fn coarse(value: &impl fmt::Debug) -> u64 {
+pub fn coarse_fingerprint(value: &impl fmt::Debug) -> u64 {
     fingerprint(value, RULES)
 }
 
 /// Returns the exact fingerprint of every field except those that record that a line has arrived.
-pub fn without_line_counters(value: &impl fmt::Debug) -> u64 {
-    fingerprint(value, A_LINE_CAME)
+pub fn fingerprint_without_line_arrival(value: &impl fmt::Debug) -> u64 {
+    fingerprint(value, LINE_ARRIVAL_FIELDS)
 }
 
 fn fingerprint(value: &impl fmt::Debug, rules: &'static [Field]) -> u64 {
@@ -111,7 +111,7 @@ fn fingerprint(value: &impl fmt::Debug, rules: &'static [Field]) -> u64 {
         fingerprint: Fingerprint::default(),
         within: Vec::new(),
         last: 0,
-        names_field: false,
+        is_field_name_next: false,
         number: None,
         skipped: None,
     };
@@ -148,7 +148,7 @@ struct Reader {
     /// The hash of the previous piece.
     last: u64,
     /// True if the next piece is a field's name.
-    names_field: bool,
+    is_field_name_next: bool,
     /// The rounding of numbers in the current field, and the depth of that field.
     number: Option<(Rounding, usize)>,
     /// The depth of the field that is being left out.
@@ -172,7 +172,7 @@ impl Write for Reader {
         match piece {
             " { " => {
                 self.within.push(self.last);
-                self.names_field = true;
+                self.is_field_name_next = true;
             }
             "(" | "[" => self.within.push(0),
             " }" | ")" | "]" => {
@@ -181,11 +181,11 @@ impl Write for Reader {
             }
             ", " => {
                 self.end_field();
-                self.names_field = self.within.last().is_some_and(|name| *name != 0);
+                self.is_field_name_next = self.within.last().is_some_and(|name| *name != 0);
             }
             ": " => {}
-            _ if self.names_field => {
-                self.names_field = false;
+            _ if self.is_field_name_next => {
+                self.is_field_name_next = false;
                 if self.skipped.is_none() {
                     self.name(piece);
                 }
@@ -235,7 +235,7 @@ impl Reader {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::small::small;
+    use crate::small::small_robot;
     use crate::{Action, initial_states};
 
     #[derive(Clone, Copy, Debug)]
@@ -269,48 +269,51 @@ mod tests {
 
     #[test]
     fn counters_are_left_out_coarse_fields_are_rounded_and_all_others_count() {
-        let fingerprint = coarse(&MOTION);
+        let fingerprint = coarse_fingerprint(&MOTION);
         assert_eq!(
-            coarse(&motion_with(|motion| motion.frames = 1_499)),
+            coarse_fingerprint(&motion_with(|motion| motion.frames = 1_499)),
             fingerprint
         );
         assert_eq!(
-            coarse(&motion_with(|motion| motion.stance.awake = 5)),
+            coarse_fingerprint(&motion_with(|motion| motion.stance.awake = 5)),
             fingerprint
         );
         assert_ne!(
-            coarse(&motion_with(|motion| motion.frames = 1_500)),
+            coarse_fingerprint(&motion_with(|motion| motion.frames = 1_500)),
             fingerprint
         );
         assert_ne!(
-            coarse(&motion_with(|motion| motion.stance.awake = 6)),
+            coarse_fingerprint(&motion_with(|motion| motion.stance.awake = 6)),
             fingerprint
         );
-        assert_ne!(coarse(&motion_with(|motion| motion.speed = 5)), fingerprint);
         assert_ne!(
-            coarse(&motion_with(|motion| motion.list[2] = 4)),
+            coarse_fingerprint(&motion_with(|motion| motion.speed = 5)),
             fingerprint
         );
-        let exact = without_line_counters(&MOTION);
         assert_ne!(
-            without_line_counters(&motion_with(|motion| motion.frames = 8)),
+            coarse_fingerprint(&motion_with(|motion| motion.list[2] = 4)),
+            fingerprint
+        );
+        let exact = fingerprint_without_line_arrival(&MOTION);
+        assert_ne!(
+            fingerprint_without_line_arrival(&motion_with(|motion| motion.frames = 8)),
             exact
         );
     }
 
     #[test]
     fn every_rule_names_an_existing_field() {
-        let robot = small();
+        let robot = small_robot();
         let mut text = String::new();
         for initial_state in initial_states::all(robot) {
             for action in [Action::Say("walk"), Action::Say("save"), Action::Frames(25)] {
                 let mut world = initial_state.world.clone();
                 _ = world.apply(action);
-                let ram = world.running.board.ram.found(Default::default());
+                let ram = world.running.board.ram.peek_restart(Default::default());
                 _ = write!(text, "{:?} {ram:?}", world.running.main);
             }
         }
-        for (owner, field, _) in RULES.iter().chain(A_LINE_CAME) {
+        for (owner, field, _) in RULES.iter().chain(LINE_ARRIVAL_FIELDS) {
             assert!(text.contains(&format!("{owner} {{ ")), "{owner}");
             assert!(text.contains(&format!(" {field}: ")), "{owner}.{field}");
         }

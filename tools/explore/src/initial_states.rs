@@ -15,7 +15,7 @@ use crate::world::World;
 /// An initial state, and the actions that lead to it.
 pub struct InitialState {
     /// The EEPROM contents and the boot loader at power-on, in words.
-    pub with: &'static str,
+    pub conditions: &'static str,
     /// The actions since power-on.
     pub actions: Vec<Action>,
     /// The initial state itself.
@@ -103,7 +103,7 @@ fn cut_off(robot: &Robot) -> Eeprom {
     set.max = Sweep(robot.reach(Servo::ALL[2]).max.0 / 2);
     settings.set_servo(Servo::ALL[2], set);
     let mut memory = Eeprom::blank();
-    let mut writing = COPIES[0].write();
+    let mut writing = COPIES[0].start_write();
     while writing.step(settings.bytes(), &mut memory) == Progress::InProgress {}
     Eeprom::with(*memory.bytes())
 }
@@ -144,7 +144,7 @@ pub fn all(robot: Robot<'static>) -> Vec<InitialState> {
             if actions.iter().all(|action| world.apply(*action).is_ok()) {
                 let actions = actions.to_vec();
                 all.push(InitialState {
-                    with,
+                    conditions: with,
                     actions,
                     world,
                 });

@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use lizard_explore::{search, small::small};
+use lizard_explore::{search, small::small_robot};
 
 fn main() -> ExitCode {
     let max = std::env::args()
@@ -12,7 +12,7 @@ fn main() -> ExitCode {
         eprintln!("explore [how many states]");
         return ExitCode::FAILURE;
     };
-    let robot = small();
+    let robot = small_robot();
     let start = std::time::Instant::now();
     let found = search(robot, max);
     println!(

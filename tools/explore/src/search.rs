@@ -71,7 +71,7 @@ pub fn search(robot: Robot<'static>, max: usize) -> SearchResult {
         found.longest += 1;
         let queue = Mutex::new(now.into_iter());
         let threads = thread::available_parallelism().map_or(1, usize::from);
-        let parts: Vec<Part> = thread::scope(|scope| {
+        let parts: Vec<ThreadResult> = thread::scope(|scope| {
             let walk = || walk(&queue, &actions, &known, &states, max);
             let threads: Vec<_> = (0..threads).map(|_| scope.spawn(walk)).collect();
             threads
@@ -112,7 +112,7 @@ pub fn search(robot: Robot<'static>, max: usize) -> SearchResult {
 
 /// The results of one thread.
 #[derive(Default)]
-struct Part {
+struct ThreadResult {
     tried: usize,
     reached: Vec<(World, Step)>,
     broken: Vec<(u32, u8, BrokenRule)>,
@@ -132,8 +132,8 @@ fn walk(
     known: &[Mutex<SeenStates>],
     states: &AtomicUsize,
     most: usize,
-) -> Part {
-    let mut part = Part::default();
+) -> ThreadResult {
+    let mut part = ThreadResult::default();
     while states.load(Ordering::Relaxed) < most {
         let chunk: Vec<_> = {
             let mut queue = queue.lock().expect("no thread has failed");
@@ -149,7 +149,7 @@ fn walk(
     part
 }
 
-impl Part {
+impl ThreadResult {
     /// Applies every possible action to a state.
     fn expand(
         &mut self,
@@ -205,7 +205,7 @@ fn describe(
         at = steps[at as usize].from;
     }
     let initial_state = &initial_states[at as usize];
-    let mut text = format!("  power on with {}", initial_state.with);
+    let mut text = format!("  power on with {}", initial_state.conditions);
     let played = initial_state
         .actions
         .iter()

@@ -14,7 +14,7 @@ use lizard_robot::flash;
 const PER_FRAME: u16 = 364;
 
 /// The sweep to either side of neutral that the gaits declare, 1/65536 turn; only `stray` exceeds it.
-const NEED: i16 = 1_000;
+const DECLARED_REACH: i16 = 1_000;
 
 /// Arduino number of the button's pin, A1.
 pub const BUTTON: u8 = 15;
@@ -27,7 +27,7 @@ pub const NOSE: u8 = 16;
 ///
 /// # Panics
 /// If robots/paper.toml is not valid.
-pub fn small() -> Robot<'static> {
+pub fn small_robot() -> Robot<'static> {
     let text = include_str!("../../../robots/paper.toml");
     let paper = lizard_robot::Robot::parse(text).expect("robots/paper.toml is right");
     let turn = |n: usize| n as f64 / SAMPLES as f64 * std::f64::consts::TAU;
@@ -37,8 +37,8 @@ pub fn small() -> Robot<'static> {
     let mut small = Content {
         slew: Slew::new(PER_FRAME),
         reach: [Reach {
-            min: Sweep(-NEED),
-            max: Sweep(NEED),
+            min: Sweep(-DECLARED_REACH),
+            max: Sweep(DECLARED_REACH),
         }; 4],
         gaits: Vec::new(),
         names: Vec::new(),

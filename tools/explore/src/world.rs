@@ -6,12 +6,12 @@ mod lines;
 use lizard_core::console::line::GARBLED;
 use lizard_core::control::fault::Fault;
 use lizard_core::memory::copies::{COPIES, REST_POSE};
-use lizard_core::memory::record::{LENGTH, VALID_MARK};
+use lizard_core::memory::record::{RECORD_BYTES, VALID_MARK};
 use lizard_core::memory::restart::{Cause, Restart};
 use lizard_core::numbers::rate::Rate;
 use lizard_core::numbers::robot::Robot;
 use lizard_core::step::Board;
-use lizard_core::virtual_board::{Eeprom, Running, reading};
+use lizard_core::virtual_board::{Eeprom, RunningRobot, compute_reading};
 use lizard_rules::{BrokenRule, Event, MS, Observer, Rule, Time, led};
 
 use crate::action::Action;
@@ -30,7 +30,7 @@ fn broken(rule: Rule, seen: impl Into<String>) -> Verdict {
 const UNREADABLE: [u8; 40] = [GARBLED; 40];
 
 /// Number of lines within which a robot must find the rate of the sender.
-const FOUND_AFTER: usize = 12;
+const MAX_LINES_TO_FIND_RATE: usize = 12;
 
 /// The cycles of a frame.
 const FRAME: Time = 20 * MS;
@@ -39,7 +39,7 @@ const FRAME: Time = 20 * MS;
 #[derive(Clone, Debug)]
 pub struct World {
     /// The firmware on its board.
-    pub running: Running,
+    pub running: RunningRobot,
     /// The observer, which sees the robot from outside.
     pub observer: Observer,
     now: Time,
@@ -50,7 +50,7 @@ pub struct World {
     /// The last line that was sent, until its answer is known.
     unread: Option<&'static str>,
     /// The rate at which lines are sent.
-    sender: Rate,
+    sender_rate: Rate,
     /// Number of lines whose answers are judged already and not printed yet.
     judged_answers: u8,
 }
@@ -61,13 +61,13 @@ impl World {
         memory.slowness = 4;
         memory.is_timed = true;
         let mut world = Self {
-            running: Running::with(robot, memory, Restart::default()),
+            running: RunningRobot::with_memory(robot, memory, Restart::default()),
             observer: Observer::new(inside::limits(&robot)),
             now: 0,
             sags_when_servos_wake: false,
             is_late: false,
             unread: None,
-            sender: Rate::Fastest,
+            sender_rate: Rate::Fastest,
             judged_answers: 0,
         };
         world.observe(Event::Supply(5_000));
@@ -78,11 +78,11 @@ impl World {
     /// Returns the number that equal states share.
     pub fn fingerprint(&self) -> u64 {
         let board = &self.running.board;
-        let mut fingerprint = Fingerprint(fingerprint::coarse(&self.running.main));
-        fingerprint.add(fingerprint::coarse(&self.observer.coarse()));
+        let mut fingerprint = Fingerprint(fingerprint::coarse_fingerprint(&self.running.main));
+        fingerprint.add(fingerprint::coarse_fingerprint(&self.observer.coarse()));
         let memory = board.memory.bytes();
         for record in COPIES.map(|copy| copy.0).into_iter().chain([REST_POSE.0]) {
-            let record = &memory[usize::from(record)..][..usize::from(LENGTH)];
+            let record = &memory[usize::from(record)..][..usize::from(RECORD_BYTES)];
             // The firmware never uses the content of an invalid record.
             let used = if record[0] == VALID_MARK {
                 record
@@ -93,9 +93,11 @@ impl World {
                 fingerprint.add(u64::from(*byte));
             }
         }
-        fingerprint.add(fingerprint::coarse(&board.ram.found(None)));
-        fingerprint.add(u64::from(board.rate as u8) << 2 | u64::from(self.sender as u8));
-        let truth = board.converter.truth();
+        fingerprint.add(fingerprint::coarse_fingerprint(
+            &board.ram.peek_restart(None),
+        ));
+        fingerprint.add(u64::from(board.rate as u8) << 2 | u64::from(self.sender_rate as u8));
+        let truth = board.converter.actual();
         let flags = [
             board.memory.is_worn,
             board.has_boot_loader,
@@ -104,7 +106,7 @@ impl World {
             board.is_stack_intact,
             board.converter.is_complete(),
             board.transmitter.is_held,
-            board.restart().before.is_some(),
+            board.restart().stance_before.is_some(),
             board.unread() > 0,
             board.is_frame_pending(),
             board.closed & 1 << BUTTON != 0,
@@ -135,9 +137,9 @@ impl World {
             | Action::LosePower(None)
             | Action::Supply(_) => true,
             Action::LosePower(Some(_)) => board.memory.address_in_write().is_some(),
-            Action::SendAt(rate) => rate != self.sender,
+            Action::SendAt(rate) => rate != self.sender_rate,
             Action::Weak(weak) => weak != self.sags_when_servos_wake,
-            Action::Late => board.late < 3,
+            Action::Late => board.late_edges < 3,
             Action::Stack => board.is_stack_intact,
             Action::Contact(pin, closed) => closed != (board.closed & 1 << pin != 0),
             Action::StopReading(deaf) => deaf != board.transmitter.is_held,
@@ -151,12 +153,12 @@ impl World {
     pub fn apply(&mut self, action: Action) -> Verdict {
         let was_kept = self.observer.rests() && self.rest_is_kept();
         match action {
-            Action::Say(_) | Action::Noise if self.sender != self.running.board.rate => {
+            Action::Say(_) | Action::Noise if self.sender_rate != self.running.board.rate => {
                 self.say_at_another_rate()?;
             }
             Action::Say(line) => self.say(line, line.as_bytes())?,
             Action::SendAt(rate) => {
-                self.sender = rate;
+                self.sender_rate = rate;
                 self.check_rate_is_found()?;
             }
             Action::Noise => self.say("", &[b'w', b'a', GARBLED, b'k'])?,
@@ -168,13 +170,13 @@ impl World {
             Action::Stall(ms) => self.stall(ms)?,
             Action::Supply(mv) => {
                 let supplies = self.robot().supplies();
-                let truth = reading(&supplies, u32::from(mv), 0);
+                let truth = compute_reading(&supplies, u32::from(mv), 0);
                 self.running.board.converter.set(truth);
                 self.observe(Event::Supply(u32::from(mv)));
             }
             Action::Weak(weak) => self.sags_when_servos_wake = weak,
             Action::Late => {
-                self.running.board.late += 1;
+                self.running.board.late_edges += 1;
                 self.observe(Event::Fault);
                 self.frame()?;
             }
@@ -188,7 +190,7 @@ impl World {
                 self.running.lose_power(torn);
                 self.note_restart(Cause::Power);
             }
-            Action::Contact(pin, closed) => self.contact(pin, closed)?,
+            Action::Contact(pin, closed) => self.set_contact(pin, closed)?,
             Action::StopReading(deaf) => self.running.board.transmitter.is_held = deaf,
         }
         let robot_rests = self.running.motion().is_resting();
@@ -267,7 +269,7 @@ impl World {
         if self.running.board.transmitter.is_held && self.running.motion().is_resting() != rested {
             self.predict_boot();
         }
-        self.pulses(true)?;
+        self.judge_pulses(true)?;
         if !was_held && self.running.motion().hazard().is_some() {
             self.observe(Event::Fault);
         }
@@ -303,7 +305,7 @@ impl World {
             if self.pass_time(20) {
                 return self.listen(self.now);
             }
-            self.pulses(false)?;
+            self.judge_pulses(false)?;
         }
         let left = ms % 20;
         if left > 0 {
@@ -314,7 +316,7 @@ impl World {
             if self.pass_time(20 - left) {
                 return self.listen(self.now);
             }
-            self.pulses(false)?;
+            self.judge_pulses(false)?;
         }
         self.listen(self.now - FRAME)
     }

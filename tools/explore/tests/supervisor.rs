@@ -1,14 +1,14 @@
 //! Test with a hundredth of the states of `make explore`: from any initial state, no sequence of a few actions breaks
 //! a rule.
 
-use lizard_explore::{search, small::small};
+use lizard_explore::{search, small::small_robot};
 
 /// Number of states to explore.
 const STATES: usize = 100_000;
 
 #[test]
 fn no_short_sequence_of_actions_breaks_a_rule() {
-    let robot = small();
+    let robot = small_robot();
     let found = search(robot, STATES);
     assert!(
         found.states >= STATES || found.is_complete,

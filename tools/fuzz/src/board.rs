@@ -3,18 +3,18 @@
 
 use lizard_core::console::command::{effect, parse};
 use lizard_core::console::word::Effect;
-use lizard_core::memory::copies::{self, Outcome, REST_POSE};
+use lizard_core::memory::copies::{self, REST_POSE, SavedState};
 use lizard_core::memory::record::Memory;
 use lizard_core::memory::restart::{Cause, Restart};
 use lizard_core::memory::settings::Settings;
-use lizard_core::virtual_board::{Eeprom, Running};
+use lizard_core::virtual_board::{Eeprom, RunningRobot};
 use lizard_robot::Robot;
 use lizard_rules::{Event, Limits, MS, Observer, Rule, Time};
 
 /// A virtual board with the core on it; time passes only in [`Board::frame`].
 pub struct Board {
     robot: &'static Robot,
-    running: Running,
+    running: RunningRobot,
     observer: Observer,
     now: Time,
     output: String,
@@ -41,7 +41,7 @@ impl Board {
     pub fn new(robot: &'static Robot, memory: Eeprom) -> Self {
         let mut board = Self {
             robot,
-            running: Running::with(*robot.firmware(), memory, Restart::default()),
+            running: RunningRobot::with_memory(*robot.firmware(), memory, Restart::default()),
             observer: Observer::new(limits(robot)),
             now: 0,
             output: String::new(),
@@ -95,7 +95,7 @@ impl Board {
     ///
     /// # Panics
     /// If the robot breaks a rule.
-    pub fn take(&mut self, byte: u8) {
+    pub fn send_byte(&mut self, byte: u8) {
         self.output.clear();
         let mut ended = None;
         match byte {
@@ -176,7 +176,7 @@ impl Board {
         let robot = self.robot.firmware();
         let mut settings = Settings::of(robot);
         let outcome = copies::load(robot, self.memory(), &mut settings);
-        let is_whole = matches!(outcome, Outcome::Latest | Outcome::Blank);
+        let is_whole = matches!(outcome, SavedState::Latest | SavedState::Blank);
         assert!(is_whole, "{rule}: {outcome:?}");
         let is_forgotten = self.memory().read(REST_POSE.0) == 0xff;
         let is_rest = copies::last_rest_pose(robot, self.memory()).is_some();

@@ -15,7 +15,7 @@ pub use board::Board;
 use std::sync::LazyLock;
 
 use lizard_core::memory::copies::{COPIES, REST_POSE};
-use lizard_core::memory::record::{Address, CONTENT, Progress};
+use lizard_core::memory::record::{Address, CONTENT_BYTES, Progress};
 use lizard_core::memory::settings::Settings;
 use lizard_core::virtual_board::Eeprom;
 use lizard_robot::Robot;
@@ -41,11 +41,11 @@ pub fn console(data: &[u8]) {
     let mut board = Board::new(robot(), Eeprom::blank());
     for eight in data.chunks(8) {
         for byte in eight {
-            board.take(*byte);
+            board.send_byte(*byte);
         }
         board.frame();
     }
-    board.take(b'\n');
+    board.send_byte(b'\n');
     board.assert_memory_is_right();
 }
 
@@ -58,9 +58,9 @@ pub fn console(data: &[u8]) {
 pub fn memory(data: &[u8]) {
     let robot = robot();
     let mut memory = Eeprom::blank();
-    let (records, patches) = data.split_at(data.len().min(3 * CONTENT));
+    let (records, patches) = data.split_at(data.len().min(3 * CONTENT_BYTES));
     let places = [COPIES[0], COPIES[1], REST_POSE];
-    for (place, change) in places.into_iter().zip(records.chunks(CONTENT)) {
+    for (place, change) in places.into_iter().zip(records.chunks(CONTENT_BYTES)) {
         let mut content = *Settings::of(robot.firmware()).bytes();
         for (byte, change) in content.iter_mut().zip(change) {
             *byte ^= change;
@@ -85,7 +85,7 @@ pub fn memory(data: &[u8]) {
         "nobody saved"
     );
     for byte in b"status\nstand\n" {
-        board.take(*byte);
+        board.send_byte(*byte);
     }
     for _ in 0..50 {
         board.frame();
@@ -93,7 +93,7 @@ pub fn memory(data: &[u8]) {
 }
 
 /// Writes a record as the core does.
-fn write(place: Address, content: &[u8; CONTENT], memory: &mut Eeprom) {
-    let mut writing = place.write();
+fn write(place: Address, content: &[u8; CONTENT_BYTES], memory: &mut Eeprom) {
+    let mut writing = place.start_write();
     while writing.step(content, memory) == Progress::InProgress {}
 }

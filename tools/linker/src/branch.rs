@@ -43,7 +43,7 @@ pub fn edit(
                 return None;
             }
             Some(Edit {
-                at: branch.offset,
+                offset: branch.offset,
                 remove: 4,
                 // brbs and brbc differ in one bit; the linker fills in the distance.
                 insert: vec![(branch.code ^ 0x0400) & 0xfc07],

@@ -20,7 +20,7 @@ pub struct Reference {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Edit {
     /// Bytes from the beginning of the code.
-    pub at: u64,
+    pub offset: u64,
     /// The number of bytes that are replaced, together with their references.
     pub remove: u64,
     /// The new code, in words.
@@ -31,7 +31,7 @@ pub struct Edit {
 
 impl Edit {
     fn end(&self) -> u64 {
-        self.at + self.remove
+        self.offset + self.remove
     }
 
     fn length(&self) -> u64 {
@@ -45,7 +45,7 @@ impl Edit {
 
     /// True if an offset is inside the replaced bytes: after their first byte and before their end.
     pub fn covers(&self, offset: u64) -> bool {
-        self.at < offset && offset < self.end()
+        self.offset < offset && offset < self.end()
     }
 }
 
@@ -56,8 +56,8 @@ pub struct Edits(Vec<Edit>);
 impl Edits {
     /// Orders the edits; `None` if two overlap or one covers an offset that something refers to.
     pub fn new(mut edits: Vec<Edit>, targets: &[u64]) -> Option<Self> {
-        edits.sort_by_key(|edit| edit.at);
-        let apart = edits.windows(2).all(|pair| pair[0].end() <= pair[1].at);
+        edits.sort_by_key(|edit| edit.offset);
+        let apart = edits.windows(2).all(|pair| pair[0].end() <= pair[1].offset);
         let keep_targets = !targets
             .iter()
             .any(|target| edits.iter().any(|edit| edit.covers(*target)));
@@ -74,7 +74,7 @@ impl Edits {
         let before = self
             .0
             .iter()
-            .filter(|edit| edit.at < offset && edit.end() <= offset);
+            .filter(|edit| edit.offset < offset && edit.end() <= offset);
         offset.wrapping_add_signed(-before.map(Edit::gain).sum::<i64>())
     }
 
@@ -83,7 +83,7 @@ impl Edits {
         let mut new = Vec::with_capacity(old.len());
         let mut done = 0;
         for edit in &self.0 {
-            new.extend_from_slice(&old[done..edit.at as usize]);
+            new.extend_from_slice(&old[done..edit.offset as usize]);
             new.extend(edit.insert.iter().flat_map(|word| word.to_le_bytes()));
             done = edit.end() as usize;
         }
@@ -94,7 +94,7 @@ impl Edits {
     /// Returns the references of the edited code, with new offsets but old addends.
     pub fn references(&self, old: &[Reference]) -> Vec<Reference> {
         let inside = |offset: u64| {
-            let holds = |edit: &Edit| edit.at <= offset && offset < edit.end();
+            let holds = |edit: &Edit| edit.offset <= offset && offset < edit.end();
             self.0.iter().any(holds)
         };
         let kept = old.iter().filter(|reference| !inside(reference.offset));
@@ -103,7 +103,7 @@ impl Edits {
             ..*reference
         });
         let new = self.0.iter().flat_map(|edit| {
-            let start = self.new_offset(edit.at);
+            let start = self.new_offset(edit.offset);
             let at_its_place = move |reference: &Reference| Reference {
                 offset: start + reference.offset,
                 ..*reference

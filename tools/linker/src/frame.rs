@@ -70,9 +70,9 @@ pub struct Frame {
     /// The size of the variables, bytes.
     pub room: u8,
     /// The size of the prologue, bytes.
-    pub beginning: u64,
+    pub prologue_size: u64,
     /// The offset and the size of each epilogue.
-    pub ends: Vec<(u64, u64)>,
+    pub epilogues: Vec<(u64, u64)>,
 }
 
 impl Frame {
@@ -122,15 +122,15 @@ impl Frame {
         Some(Self {
             first,
             room,
-            beginning: code.offset(body),
-            ends,
+            prologue_size: code.offset(body),
+            epilogues: ends,
         })
     }
 
     /// Returns the edits that make the function use the shared routines.
     pub fn edits(&self, routines: Routines) -> Vec<Edit> {
         let replace = |at, remove, code, symbol| Edit {
-            at,
+            offset: at,
             remove,
             insert: vec![encode_ldi_r26(self.room), code, 0],
             references: vec![Reference {
@@ -140,9 +140,9 @@ impl Frame {
                 addend: 0,
             }],
         };
-        let mut edits = vec![replace(0, self.beginning, CALL, routines.save)];
+        let mut edits = vec![replace(0, self.prologue_size, CALL, routines.save)];
         edits.extend(
-            self.ends
+            self.epilogues
                 .iter()
                 .map(|(at, size)| replace(*at, *size, JMP, routines.restore)),
         );

@@ -54,12 +54,12 @@ pub fn shrink(file: &[u8]) -> Result<Option<(Vec<u8>, Savings)>, ShrinkError> {
     object.name_sections();
     let routines = object.add_routine_symbols();
     let mut savings = Savings::default();
-    for (section, edits) in object.frames(&routines) {
+    for (section, edits) in object.frame_edits(&routines) {
         savings.frames += edits.gain();
         object.apply(section, &edits);
     }
     for section in object.functions() {
-        while let Some(edits) = object.next(section, branch::edit) {
+        while let Some(edits) = object.find_next_edit(section, branch::edit) {
             savings.branches += edits.gain();
             object.apply(section, &edits);
         }
@@ -177,7 +177,8 @@ impl Object<'_> {
                 let own = edit.filter(|_| table.sh_info_section == Some(section));
                 let places = all.iter().filter_map(|relocation| {
                     let offset = relocation.r_offset;
-                    let replaced = own.is_some_and(|edit| edit.at == offset || edit.covers(offset));
+                    let replaced =
+                        own.is_some_and(|edit| edit.offset == offset || edit.covers(offset));
                     let symbol = relocation.symbol.filter(|_| !replaced)?;
                     self.place(section, symbol, relocation.r_addend)
                 });
@@ -188,7 +189,7 @@ impl Object<'_> {
     }
 
     /// Returns the edits of each function that gets shorter with shared prologues and epilogues.
-    fn frames(&self, routines: &[Routines]) -> Vec<(SectionId, Edits)> {
+    fn frame_edits(&self, routines: &[Routines]) -> Vec<(SectionId, Edits)> {
         let edits = |section| {
             let frame = Frame::of(&self.code(section)?)?;
             let edits = frame.edits(routines[frame.first]);
@@ -199,7 +200,7 @@ impl Object<'_> {
     }
 
     /// Returns the next edit that `edit` finds in a section; `None` if it finds no edit.
-    fn next<F>(&self, section: SectionId, edit: F) -> Option<Edits>
+    fn find_next_edit<F>(&self, section: SectionId, edit: F) -> Option<Edits>
     where
         F: Fn(&Code, &[u64], &dyn Fn(&Reference) -> Option<u64>) -> Option<Edit>,
     {

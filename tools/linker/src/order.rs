@@ -30,7 +30,7 @@ pub struct Call {
     /// The piece that contains the call.
     pub from: usize,
     /// The offset in that piece, bytes.
-    pub at: u32,
+    pub offset: u32,
     /// The piece that is called.
     pub to: usize,
 }
@@ -49,7 +49,7 @@ impl Pieces {
     /// random and undoes a move that raises the cost by more than a threshold, which falls to
     /// zero (threshold accepting, Dueck and Scheuer 1990). Computes in integers, so that the
     /// result is the same on every machine. The last piece stays the last.
-    pub fn order(&self) -> Vec<usize> {
+    pub fn find_order(&self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.sizes.len()).collect();
         let movable = self.sizes.len().saturating_sub(1);
         let mut random = fastrand::Rng::with_seed(SEED);
@@ -76,7 +76,7 @@ impl Pieces {
     }
 
     /// Returns the number of calls out of reach in an order.
-    pub fn far(&self, order: &[usize]) -> usize {
+    pub fn far_call_count(&self, order: &[usize]) -> usize {
         self.bytes_beyond_reach(order)
             .filter(|beyond| *beyond > 0)
             .count()
@@ -98,7 +98,7 @@ impl Pieces {
             place += self.sizes[*piece];
         }
         self.calls.iter().map(move |call| {
-            let distance = (places[call.from] + call.at).abs_diff(places[call.to]);
+            let distance = (places[call.from] + call.offset).abs_diff(places[call.to]);
             distance.saturating_sub(REACH)
         })
     }
@@ -127,11 +127,15 @@ mod tests {
         pieces.sizes.push(0);
         for from in 0..10 {
             let to = from + 10;
-            pieces.calls.push(Call { from, at: 100, to });
+            pieces.calls.push(Call {
+                from,
+                offset: 100,
+                to,
+            });
         }
         let call = Call {
             from: 0,
-            at: 200,
+            offset: 200,
             to: 20,
         };
         pieces.calls.push(call);
@@ -142,14 +146,14 @@ mod tests {
     fn pieces_that_call_each_other_are_near_each_other_if_possible() {
         let pieces = pairs();
         let compiled: Vec<usize> = (0..21).collect();
-        assert_eq!(pieces.far(&compiled), 11);
-        assert_eq!(pieces.far(&pieces.order()), 0);
+        assert_eq!(pieces.far_call_count(&compiled), 11);
+        assert_eq!(pieces.far_call_count(&pieces.find_order()), 0);
     }
 
     #[test]
     fn every_run_finds_the_same_order_of_all_pieces_with_the_last_in_its_place() {
-        let order = pairs().order();
-        assert_eq!(order, pairs().order());
+        let order = pairs().find_order();
+        assert_eq!(order, pairs().find_order());
         assert_eq!(order.last(), Some(&20));
         let mut all = order;
         all.sort_unstable();
@@ -158,16 +162,16 @@ mod tests {
 
     #[test]
     fn no_piece_and_one_piece_have_an_order() {
-        assert!(Pieces::default().order().is_empty());
+        assert!(Pieces::default().find_order().is_empty());
         let one = Pieces {
             sizes: vec![9000, 0],
             calls: vec![Call {
                 from: 0,
-                at: 0,
+                offset: 0,
                 to: 1,
             }],
         };
-        assert_eq!(one.order(), [0, 1]);
-        assert_eq!(one.far(&[0, 1]), 1);
+        assert_eq!(one.find_order(), [0, 1]);
+        assert_eq!(one.far_call_count(&[0, 1]), 1);
     }
 }

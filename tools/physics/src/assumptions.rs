@@ -8,8 +8,8 @@ use lizard_parts::{Assembly, Pads, Scene};
 use lizard_robot::Robot;
 
 use crate::case::Case;
+use crate::crate_folder;
 use crate::figures::{Displacement, Figures};
-use crate::here;
 use crate::mujoco::scene_of;
 use crate::surface::{self, Surface, Surfaces};
 use crate::table::Part;
@@ -23,7 +23,7 @@ const MIN_CHANGE_PERCENT: f64 = 10.0;
 #[derive(Clone, Copy)]
 pub struct Assumption {
     /// The changed assumption in words.
-    pub words: &'static str,
+    pub description: &'static str,
     /// A line of robot.toml, and the lines that replace it.
     keys: Option<(&'static str, &'static str)>,
     /// The floor, if it is not level and even.
@@ -32,7 +32,7 @@ pub struct Assumption {
 }
 
 const UNCHANGED: Assumption = Assumption {
-    words: "",
+    description: "",
     keys: None,
     surface: None,
     change: |_| {},
@@ -42,33 +42,33 @@ impl Assumption {
     /// All changed assumptions except the surfaces, which have a table of their own.
     pub const ALL: [Self; 6] = [
         Self {
-            words: "analog servos that drive in bursts",
-            change: |scene| scene.bursts = true,
+            description: "analog servos that drive in bursts",
+            change: |scene| scene.drives_in_bursts = true,
             ..UNCHANGED
         },
         Self {
-            words: "bursts, and a rotor of 5 ms",
+            description: "bursts, and a rotor of 5 ms",
             keys: Some(("[servo.A1]", "[servo]\nspin_up_ms = 5.0\n[servo.A1]")),
-            change: |scene| scene.bursts = true,
+            change: |scene| scene.drives_in_bursts = true,
             ..UNCHANGED
         },
         Self {
-            words: "legs and links of a fifth of their mass",
-            change: |scene| scene.limbs = 0.2,
+            description: "legs and links of a fifth of their mass",
+            change: |scene| scene.limb_mass_factor = 0.2,
             ..UNCHANGED
         },
         Self {
-            words: "mass centre 25 mm ahead",
+            description: "mass centre 25 mm ahead",
             keys: Some(("[body]", "[body]\ncentre = [25.0, 0.0]")),
             ..UNCHANGED
         },
         Self {
-            words: "mass centre 25 mm behind",
+            description: "mass centre 25 mm behind",
             keys: Some(("[body]", "[body]\ncentre = [-25.0, 0.0]")),
             ..UNCHANGED
         },
         Self {
-            words: "edge of 1 mm, pads with terraces of 0.1 mm",
+            description: "edge of 1 mm, pads with terraces of 0.1 mm",
             surface: Some(Surface::Edge(10)),
             change: |scene| scene.pads = Pads::Terraces(0.1),
             ..UNCHANGED
@@ -102,7 +102,7 @@ impl Assumption {
 
 /// Returns the paper's robot with a line of its file replaced.
 fn paper_with(old: &str, new: &str) -> Robot {
-    let text = std::fs::read_to_string(here().join("../../robots/paper.toml"));
+    let text = std::fs::read_to_string(crate_folder().join("../../robots/paper.toml"));
     let text = text.expect("robots/paper.toml");
     let line = format!("\n{old}");
     assert!(text.contains(&line), "{old}");
@@ -131,13 +131,17 @@ pub fn table(figures: &Figures, surfaces: &Surfaces, assumptions: &Assumptions) 
         let of = GAITS.map(|gait| surfaces["paper"][gait][&words]);
         (words, of)
     });
-    let changed = Assumption::ALL.map(|Assumption { words, .. }| {
-        let of = GAITS.map(|gait| assumptions[words][gait]);
-        (words.to_owned(), of)
-    });
+    let changed = Assumption::ALL.map(
+        |Assumption {
+             description: words, ..
+         }| {
+            let of = GAITS.map(|gait| assumptions[words][gait]);
+            (words.to_owned(), of)
+        },
+    );
     let percent = |of: [Displacement; GAITS.len()]| {
         let mut changes = of.into_iter().zip(GAITS).map(|(displacement, gait)| {
-            let level = surface::level(figures, gait);
+            let level = surface::level_displacement(figures, gait);
             let part = match level.0[0].abs() > level.0[2].abs() {
                 true => Part::Ahead,
                 false => Part::Turn,

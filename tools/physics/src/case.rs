@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use lizard_robot::{Drive, Ground, Kind, Robot, Stance};
+use lizard_robot::{Drive, DriveKind, Ground, Robot, Stance};
 
 /// The drive of the legs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,7 +83,7 @@ impl Case {
             drive: match self.legs {
                 Legs::Rigid => Drive::RIGID,
                 Legs::Strut => Drive {
-                    kind: Kind::Strut(robot.strut_of(&robot.parts().spring)),
+                    kind: DriveKind::Strut(robot.strut_of(&robot.parts().spring)),
                     ..Drive::RIGID
                 },
             },

@@ -5,7 +5,7 @@ use lizard_parts::Block;
 use lizard_robot::{Place, Robot, Travel};
 
 use crate::figures::Displacement;
-use crate::surface::parts;
+use crate::surface::gait_purposes;
 use crate::table::Part;
 
 /// The distance of the nearest foot from the edge before and after the measured cycles, mm: feet
@@ -20,7 +20,7 @@ pub struct Crossing {
     /// The number of cycles to measure.
     pub cycles: u32,
     /// True if all feet pass the edge; false for a gait that turns on the spot.
-    pub passes: bool,
+    pub is_crossed: bool,
     /// The direction across the edge, in which the floor rises, deg counter-clockwise from ahead.
     heading: f64,
     /// The distance of the edge from the robot's place at the start, mm.
@@ -43,7 +43,7 @@ impl Crossing {
             turn,
         };
         let begin = (0..unmeasured).fold(Place::START, |place, _| place.after(cycle));
-        let is_turn = !matches!(parts(by_cycle)[..], [Part::Ahead, ..]);
+        let is_turn = !matches!(gait_purposes(by_cycle)[..], [Part::Ahead, ..]);
         let mut end = begin;
         for cycles in 1.. {
             end = end.after(cycle);
@@ -59,7 +59,7 @@ impl Crossing {
             if passes || end.seen_from(begin).turn.abs() >= MAX_TURN {
                 return Self {
                     cycles,
-                    passes,
+                    is_crossed: passes,
                     heading,
                     distance,
                 };
@@ -75,9 +75,9 @@ impl Crossing {
         let (sin, cos) = self.heading.to_radians().sin_cos();
         let middle = self.distance + SIZE / 2.0;
         Block {
-            at: [-middle * sin, middle * cos],
+            centre: [-middle * sin, middle * cos],
             size: [SIZE, SIZE, high],
-            turned: self.heading,
+            rotation: self.heading,
         }
     }
 }

@@ -43,28 +43,28 @@ pub struct Answers {
 }
 
 /// Allowed differences between MuJoCo and the model: mm or, if larger, a share of the distance; and
-/// deg. `LEVEL` is for level feet, `SOFT` and `STIFF` for one foot too long: on soft leaves, and on
+/// deg. `LEVEL` is for level feet, `SOFT_FOOT_TOLERANCE` and `STIFF` for one foot too long: on soft leaves, and on
 /// stiff leaves, where a few hundredths of a mm decide which feet stick.
-const LEVEL: (f64, f64, f64) = (1.5, 0.08, 1.0);
-const SOFT: (f64, f64, f64) = (2.5, 0.08, 1.5);
-const STIFF: (f64, f64, f64) = (5.0, 0.35, 4.0);
+const LEVEL_FEET_TOLERANCE: (f64, f64, f64) = (1.5, 0.08, 1.0);
+const SOFT_FOOT_TOLERANCE: (f64, f64, f64) = (2.5, 0.08, 1.5);
+const STIFF_FOOT_TOLERANCE: (f64, f64, f64) = (5.0, 0.35, 4.0);
 /// If a gait moves less than this in the model, mm and deg, MuJoCo may differ by
 /// [`STANDSTILL_TOLERANCE_MM`]: the robot moves nearly equally fast in both directions, so that
 /// inertia decides.
-const NOWHERE: (f64, f64) = (1.0, 0.5);
+const STANDSTILL_LIMITS: (f64, f64) = (1.0, 0.5);
 const STANDSTILL_TOLERANCE_MM: f64 = 3.5;
 
 impl Answers {
     /// Returns the allowed difference between MuJoCo and the model, mm and deg.
     pub fn bound(&self, case: Case) -> (f64, f64) {
         let (mm, share, deg) = match case.feet {
-            Feet::Level => LEVEL,
-            Feet::Soft => SOFT,
-            Feet::Stiff => STIFF,
+            Feet::Level => LEVEL_FEET_TOLERANCE,
+            Feet::Soft => SOFT_FOOT_TOLERANCE,
+            Feet::Stiff => STIFF_FOOT_TOLERANCE,
         };
         let [ahead, left, turn] = self.model.unwrap_or_default().0;
         let displacement = ahead.hypot(left);
-        match displacement < NOWHERE.0 && turn.abs() < NOWHERE.1 {
+        match displacement < STANDSTILL_LIMITS.0 && turn.abs() < STANDSTILL_LIMITS.1 {
             true => (mm.max(STANDSTILL_TOLERANCE_MM), deg),
             false => (mm.max(share * displacement), deg),
         }

@@ -8,8 +8,8 @@ use lizard_parts::{Assembly, Course, Scene};
 use lizard_robot::{CheckedGait, Ground, Robot, Stance};
 
 use crate::case::Legs;
+use crate::crate_folder;
 use crate::figures::{Answers, Displacement};
-use crate::here;
 use crate::mujoco::{Jobs, MujocoError};
 
 /// The name of the robot's file.
@@ -119,12 +119,12 @@ pub fn measure(robot: &Robot) -> Result<Grains, MujocoError> {
 }
 
 /// Returns the number of cycles after which a gait's motion repeats from cycle to cycle.
-pub(crate) fn settling(gait: &CheckedGait) -> u32 {
+pub(crate) fn settling_cycles(gait: &CheckedGait) -> u32 {
     (SETTLING_S / gait.period()).ceil() as u32
 }
 
 /// Returns the answers of a gait at the ratio in the robot's file.
-pub(crate) fn at_own_ratio(answers: &[Answers]) -> Answers {
+pub(crate) fn answers_at_own_ratio(answers: &[Answers]) -> Answers {
     let own = crate::robot(ROBOT).ground().ratio;
     let index = RATIOS.iter().position(|ratio| *ratio == own);
     answers[index.expect("the file's ratio is one of the table's")]
@@ -132,12 +132,12 @@ pub(crate) fn at_own_ratio(answers: &[Answers]) -> Answers {
 
 fn scene(name: String, assembly: &Assembly, gait: &CheckedGait, ratio: f64) -> Scene {
     let robot = assembly.robot();
-    let cycles = settling(gait) + 1;
+    let cycles = settling_cycles(gait) + 1;
     Scene {
         name,
         ratio,
         course: Some(Course::of(robot, gait, cycles, 1)),
-        shapes: false,
+        has_shapes: false,
         ..Scene::of(assembly)
     }
 }
@@ -199,5 +199,5 @@ pub fn table(robot: &Robot, grains: &Grains) -> String {
 /// # Errors
 /// Fails if the file cannot be written.
 pub fn store(grains: &Grains) -> std::io::Result<()> {
-    std::fs::write(here().join("grains.json"), text(grains))
+    std::fs::write(crate_folder().join("grains.json"), text(grains))
 }

@@ -42,11 +42,11 @@ pub const ROBOTS: [&str; 4] = ["paper", "own-gaits", "large", "unequal"];
 /// # Panics
 /// If the file is missing or refused; tests of the robot crate show that every file is valid.
 pub fn robot(name: &str) -> Robot {
-    let file = here().join(format!("../../robots/{name}.toml"));
+    let file = crate_folder().join(format!("../../robots/{name}.toml"));
     Robot::load(file).expect(name)
 }
 
 /// Returns the folder of this crate.
-pub fn here() -> PathBuf {
+pub fn crate_folder() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }

@@ -14,7 +14,9 @@ use lizard_physics::pads::{self, SURFACES, Shape, Shapes};
 use lizard_physics::servos::{self, Servos, Variant, servos_table};
 use lizard_physics::surface::{self, Surface, Surfaces, surfaces_table};
 use lizard_physics::text::{blocks, lines};
-use lizard_physics::{Answers, Displacement, Figures, Legs, ROBOTS, Row, here, robot, rows, table};
+use lizard_physics::{
+    Answers, Displacement, Figures, Legs, ROBOTS, Row, crate_folder, robot, rows, table,
+};
 use lizard_robot::Robot;
 
 /// Largest difference from the stored displacement, mm and deg, without a change of the model, MuJoCo or the
@@ -110,7 +112,7 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         assumed.concat().into_iter().filter(|_| is_one()).collect();
     for (index, (assumption, gait)) in assumed.iter().enumerate() {
         let assembly = Assembly::new(&assumption.robot());
-        let level = surface::level(&kept, gait);
+        let level = surface::level_displacement(&kept, gait);
         let scene = assumption.scene(&name(ASSUMPTIONS, index), &assembly, gait, level);
         jobs.add(&assembly, std::iter::once((Legs::Rigid, scene)))?;
     }
@@ -118,7 +120,7 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     let shapes: Vec<(Shape, Surface)> = shapes.concat().into_iter().filter(|_| is_one()).collect();
     let paper = Assembly::new(&robot("paper"));
     let walks = shapes.iter().enumerate().map(|(index, (shape, surface))| {
-        let level = surface::level(&kept, pads::GAIT);
+        let level = surface::level_displacement(&kept, pads::GAIT);
         (
             Legs::Rigid,
             shape.scene(&name(PADS, index), &paper, *surface, level),
@@ -205,7 +207,7 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     for (index, (assumption, gait)) in assumed.iter().enumerate() {
         let displacement = by_mujoco[&name(ASSUMPTIONS, index)];
         let of = by_assumption
-            .entry(assumption.words.to_owned())
+            .entry(assumption.description.to_owned())
             .or_default();
         of.insert((*gait).to_owned(), displacement);
     }
@@ -234,11 +236,14 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         }
     }
     if write {
-        std::fs::write(here().join("figures.json"), found.text())?;
-        std::fs::write(here().join("surfaces.json"), blocks(&surfaces))?;
-        std::fs::write(here().join("assumptions.json"), lines(&by_assumption))?;
-        std::fs::write(here().join("pads.json"), lines(&by_shape))?;
-        std::fs::write(here().join("servos.json"), servos::text(&by_servos))?;
+        std::fs::write(crate_folder().join("figures.json"), found.text())?;
+        std::fs::write(crate_folder().join("surfaces.json"), blocks(&surfaces))?;
+        std::fs::write(
+            crate_folder().join("assumptions.json"),
+            lines(&by_assumption),
+        )?;
+        std::fs::write(crate_folder().join("pads.json"), lines(&by_shape))?;
+        std::fs::write(crate_folder().join("servos.json"), servos::text(&by_servos))?;
         println!("physics: written to tools/physics; `make docs` puts it into the pages");
     } else if one_in == 1 && kept.count() != found.count() {
         faults.push(format!(
@@ -292,10 +297,13 @@ fn describe_grain_changes(kept: &Grains, now: &Grains) -> Vec<String> {
 }
 
 /// Displacements by group and name: by assumption and gait, or by pad shape and surface.
-type Named = BTreeMap<String, BTreeMap<String, Displacement>>;
+type StoredDisplacements = BTreeMap<String, BTreeMap<String, Displacement>>;
 
 /// Returns a message for each displacement that differs from the stored one.
-fn describe_displacement_changes(stored: &Named, now: &Named) -> Vec<String> {
+fn describe_displacement_changes(
+    stored: &StoredDisplacements,
+    now: &StoredDisplacements,
+) -> Vec<String> {
     let all = now
         .iter()
         .flat_map(|(group, of)| of.iter().map(move |(name, is)| (group, name, is)));

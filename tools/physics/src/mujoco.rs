@@ -10,8 +10,8 @@ use serde::Deserialize;
 use tempfile::TempDir;
 
 use crate::case::{Case, Legs};
+use crate::crate_folder;
 use crate::figures::Displacement;
-use crate::here;
 
 /// The reason why MuJoCo gives no answer.
 #[derive(Debug, thiserror::Error)]
@@ -38,7 +38,7 @@ pub enum MujocoError {
     },
     /// A part has no surface.
     #[error(transparent)]
-    Unfit(#[from] lizard_parts::Unfit),
+    Unfit(#[from] lizard_parts::BuildProblem),
 }
 
 /// A line of the judge's answer.
@@ -109,8 +109,8 @@ impl Jobs {
     /// # Errors
     /// Fails if Python does not start.
     pub fn start(self) -> Result<RunningJudge, MujocoError> {
-        let judge = Command::new(here().join("../../target/physics/bin/python"))
-            .arg(here().join("judge.py"))
+        let judge = Command::new(crate_folder().join("../../target/physics/bin/python"))
+            .arg(crate_folder().join("judge.py"))
             .arg(self.folder.path())
             .stdout(Stdio::piped())
             .spawn()
@@ -129,7 +129,7 @@ pub(crate) fn scene_of(name: &str, assembly: &Assembly, gait: &str, case: Case) 
     let strut = robot.strut_of(&robot.parts().spring);
     Scene {
         name: name.to_owned(),
-        long: [case.feet.excess_length(), 0.0, 0.0, 0.0],
+        excess_lengths: [case.feet.excess_length(), 0.0, 0.0, 0.0],
         stiffness: case.feet.stiffness(robot),
         // Friction is equal in all directions, as in `Case::ground`; `grains.rs` is for other pads.
         ratio: 1.0,
@@ -139,7 +139,7 @@ pub(crate) fn scene_of(name: &str, assembly: &Assembly, gait: &str, case: Case) 
         }),
         course: Some(Course::of(robot, gait, 2, 1)),
         // Shapes are only for pictures; MuJoCo reads the file ten times as fast without them.
-        shapes: false,
+        has_shapes: false,
         ..Scene::of(assembly)
     }
 }

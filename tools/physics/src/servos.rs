@@ -7,14 +7,14 @@ use std::fmt::Write as _;
 use lizard_parts::{Assembly, Course, Scene};
 use lizard_robot::Robot;
 
+use crate::crate_folder;
 use crate::figures::{Answers, Displacement};
-use crate::here;
 
 /// The gaits, and the index of the part of the displacement that is compared: 0 for the distance
 /// forward, 2 for the turn.
 pub const GAITS: [(&str, usize); 4] = [("walk", 0), ("trot", 0), ("crawl", 0), ("left", 2)];
 /// The allowed difference between the model and MuJoCo, as a share of MuJoCo's displacement.
-const ALLOWED: f64 = 0.10;
+const MAX_DEVIATION_SHARE: f64 = 0.10;
 
 /// The paper's robot with other servos, joints, mass and pads.
 #[derive(Clone, Copy, Debug)]
@@ -92,7 +92,7 @@ impl Variant {
     /// # Panics
     /// If robots/paper.toml does not have the lines that are replaced.
     pub fn robot(&self) -> Robot {
-        let text = std::fs::read_to_string(here().join("../../robots/paper.toml"));
+        let text = std::fs::read_to_string(crate_folder().join("../../robots/paper.toml"));
         let mut text = text.expect("robots/paper.toml");
         let own = crate::robot("paper").ground().body.mass;
         let mut replace = |old: &str, new: &str| {
@@ -126,11 +126,11 @@ impl Variant {
         let mut scene = Scene {
             name: name.to_owned(),
             course: Some(Course::of(assembly.robot(), gait, 2, 1)),
-            shapes: false,
+            has_shapes: false,
             ..Scene::of(assembly)
         };
         if let Some(pins) = self.pins {
-            (scene.pins, scene.motors.joints.drag) = (pins, 0.0);
+            (scene.pin_friction, scene.motors.joints.drag) = (pins, 0.0);
         }
         scene
     }
@@ -142,13 +142,14 @@ impl Variant {
     pub fn model(&self, gait: &str) -> Displacement {
         let robot = self.robot();
         let gait = robot.gait(gait).expect(gait);
-        gait.driven(robot.ground(), &robot.motors(), 1.0).into()
+        gait.simulate_driven_cycle(robot.ground(), &robot.motors(), 1.0)
+            .into()
     }
 
     /// Returns the share by which the model may differ from MuJoCo in a gait.
-    fn allowed(&self, gait: &str) -> f64 {
+    fn max_deviation_share(&self, gait: &str) -> f64 {
         let further = self.exceptions.iter().find(|(of, _)| *of == gait);
-        further.map_or(ALLOWED, |(_, share)| *share)
+        further.map_or(MAX_DEVIATION_SHARE, |(_, share)| *share)
     }
 
     /// Returns a message if the model differs from MuJoCo too much in a gait.
@@ -157,7 +158,7 @@ impl Variant {
         let [model, mujoco] =
             [answers.model?, answers.mujoco].map(|displacement| displacement.0[part]);
         let error = model / mujoco - 1.0;
-        (error.abs() > self.allowed(gait)).then(|| {
+        (error.abs() > self.max_deviation_share(gait)).then(|| {
             let percent = 100.0 * error;
             format!("the model has {model:.1}, MuJoCo {mujoco:.1}: {percent:+.0} %")
         })

@@ -25,7 +25,7 @@ const MIN_DISPLACEMENT: (f64, f64) = (9.0, 3.0);
 
 /// Returns the purpose of a gait with this displacement on a level floor: distance, turn, or both; empty for
 /// a gait that does not walk.
-pub(crate) fn parts(Displacement([ahead, _, turn]): Displacement) -> Vec<Part> {
+pub(crate) fn gait_purposes(Displacement([ahead, _, turn]): Displacement) -> Vec<Part> {
     let all = [
         (Part::Ahead, ahead.abs() > MIN_DISPLACEMENT.0),
         (Part::Turn, turn.abs() > MIN_DISPLACEMENT.1),
@@ -44,7 +44,12 @@ pub fn gaits(figures: &Figures, robot: &str) -> Vec<(String, Displacement)> {
     if robot == grains::ROBOT {
         let stored = grains::stored();
         return grains::GAITS
-            .map(|(gait, _)| (gait.to_owned(), grains::at_own_ratio(&stored[gait]).mujoco))
+            .map(|(gait, _)| {
+                (
+                    gait.to_owned(),
+                    grains::answers_at_own_ratio(&stored[gait]).mujoco,
+                )
+            })
             .into();
     }
     let known = crate::robot(robot);
@@ -60,7 +65,7 @@ pub fn gaits(figures: &Figures, robot: &str) -> Vec<(String, Displacement)> {
     level
         .filter(|(_, answers)| answers.model.is_some())
         .map(|(gait, answers)| (gait, answers.mujoco))
-        .filter(|(_, level)| !parts(*level).is_empty())
+        .filter(|(_, level)| !gait_purposes(*level).is_empty())
         .collect()
 }
 
@@ -125,7 +130,7 @@ impl Surface {
         match self {
             Self::Edge(tenths) => floor.blocks.push(crossing.block(mm(tenths))),
             Self::Blocks(tenths) => floor.blocks = strewn_blocks(robot, mm(tenths)),
-            Self::Slope(deg) => floor.rises = direction * f64::from(deg),
+            Self::Slope(deg) => floor.slope = direction * f64::from(deg),
             Self::UnequalFriction => {
                 let side = |[_, left]: [f64; 2]| if left > 0.0 { 0.4 } else { 0.8 };
                 floor.friction = robot.ground().feet.positions([0.0; 4]).map(side);
@@ -153,7 +158,7 @@ impl Surface {
         // On pads without a grain, a gait has its full speed from the first cycle on.
         let settling = match scene.ratio == 1.0 {
             true => 0,
-            false => grains::settling(gait),
+            false => grains::settling_cycles(gait),
         };
         let crossing = Crossing::of(robot, level, settling);
         let [cycles, measured] = match self.is_climbed() {
@@ -164,7 +169,7 @@ impl Surface {
         scene.floor = self.floor(assembly, &crossing, direction);
         if self == Self::NoPad {
             // The foot stands on the head of its screw.
-            scene.long[0] = -assembly.stack().under_head(robot.parts());
+            scene.excess_lengths[0] = -assembly.stack().pad_head_height(robot.parts());
         }
         scene
     }
@@ -196,7 +201,11 @@ fn strewn_blocks(robot: &Robot, high: f64) -> Vec<Block> {
             if feet.into_iter().map(distance).fold(f64::INFINITY, f64::min) > SQUARE {
                 let size = [wide, long, high];
                 let turned = 0.0;
-                blocks.push(Block { at, size, turned });
+                blocks.push(Block {
+                    centre: at,
+                    size,
+                    rotation: turned,
+                });
             }
         }
     }
@@ -230,7 +239,7 @@ pub fn stored() -> Surfaces {
 ///
 /// # Panics
 /// If no displacement of the gait is stored.
-pub fn level(figures: &Figures, gait: &str) -> Displacement {
+pub fn level_displacement(figures: &Figures, gait: &str) -> Displacement {
     let answers = figures.get("paper", gait, Case::ALL[0]);
     answers.expect("figures.json has it").mujoco
 }
@@ -249,7 +258,7 @@ pub fn is_known_shortfall(robot: &str, gait: &str, surface: Surface) -> bool {
 
 /// Returns the least share of its distance or turn that a gait must keep on a surface; `None` if any share
 /// is accepted.
-fn least(surface: Surface, part: Part) -> Option<f64> {
+fn min_share(surface: Surface, part: Part) -> Option<f64> {
     match part {
         Part::Ahead => surface.least_distance(),
         Part::Turn => surface.least_turn(),
@@ -266,12 +275,12 @@ pub fn excess_losses(
     let loss = |part: Part| {
         let [was, is] = [level, displacement].map(|displacement| part.value(displacement));
         let unit = part.unit();
-        let least = least(surface, part)?;
+        let least = min_share(surface, part)?;
         (is / was < least).then(|| {
             format!("{is:.1} {unit} a cycle of {was:.1} on a level floor; {least:.2} must be kept")
         })
     };
-    parts(level).into_iter().filter_map(loss).collect()
+    gait_purposes(level).into_iter().filter_map(loss).collect()
 }
 
 /// Returns the table of a robot's gaits on its surfaces in Markdown.
@@ -285,7 +294,7 @@ pub fn surfaces_table(robot: &str, figures: &Figures, surfaces: &Surfaces) -> St
     );
     for (gait, flat) in gaits(figures, robot) {
         let stored = surfaces.get(robot).and_then(|of| of.get(&gait));
-        for part in parts(flat) {
+        for part in gait_purposes(flat) {
             let cell = |displacement| format!(" {:+.1}", part.value(displacement));
             let displacements = of_robot.iter().map(|surface| {
                 let displacement = stored.and_then(|of| of.get(&surface.to_string()));
@@ -293,7 +302,7 @@ pub fn surfaces_table(robot: &str, figures: &Figures, surfaces: &Surfaces) -> St
                     return " - |".to_owned();
                 };
                 let share = part.value(*displacement) / part.value(flat);
-                let is_less = least(*surface, part).is_some_and(|least| share < least);
+                let is_less = min_share(*surface, part).is_some_and(|least| share < least);
                 let mark = if is_less { "!" } else { "" };
                 format!("{}{mark} |", cell(*displacement))
             });
@@ -302,10 +311,12 @@ pub fn surfaces_table(robot: &str, figures: &Figures, surfaces: &Surfaces) -> St
         }
     }
     for (name, part) in [("a displacement", Part::Ahead), ("a turn", Part::Turn)] {
-        let bars = of_robot.iter().map(|surface| match least(*surface, part) {
-            Some(share) => format!(" {:.0} % |", 100.0 * share),
-            None => " - |".to_owned(),
-        });
+        let bars = of_robot
+            .iter()
+            .map(|surface| match min_share(*surface, part) {
+                Some(share) => format!(" {:.0} % |", 100.0 * share),
+                None => " - |".to_owned(),
+            });
         let bars = bars.collect::<String>();
         _ = writeln!(text, "| at least, of {name} | 100 % |{bars}");
     }

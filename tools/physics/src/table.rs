@@ -139,7 +139,9 @@ pub fn spread(name: &str, robot: &Robot, figures: &Figures) -> String {
             gait.name(),
             gait.period(),
             cell(&[model]),
-            cell(&[gait.driven(robot.ground(), &robot.motors(), 1.0).into()]),
+            cell(&[gait
+                .simulate_driven_cycle(robot.ground(), &robot.motors(), 1.0)
+                .into()]),
             cell(&[level.mujoco]),
             cell(&[rocks, long.mujoco])
         );

@@ -10,14 +10,14 @@ use lizard_physics::pads::{self, SURFACES, Shape};
 use lizard_physics::surface::{self, Surface, surfaces_table};
 use lizard_physics::text::{blocks, lines};
 use lizard_physics::{
-    Case, Crossing, Displacement, Feet, Figures, Legs, ROBOTS, expected, here, robot, rows, spread,
-    table,
+    Case, Crossing, Displacement, Feet, Figures, Legs, ROBOTS, crate_folder, expected, robot, rows,
+    spread, table,
 };
 
 /// Compares the text between a marker and the next end marker of a page with `wanted`; replaces it if
 /// `BLESS_PHYSICS` is set.
 fn check_block(page: &str, marker: &str, wanted: &str) {
-    let file = here().join("../..").join(page);
+    let file = crate_folder().join("../..").join(page);
     let text = std::fs::read_to_string(&file).expect(page);
     let begin = format!("<!-- {marker} -->\n");
     let start = text.find(&begin).expect(&begin) + begin.len();
@@ -68,7 +68,7 @@ fn the_pages_have_the_displacements_of_model_and_engine() {
 
 #[test]
 fn the_stored_figures_are_written_as_they_are_read() {
-    let file = here().join("figures.json");
+    let file = crate_folder().join("figures.json");
     let text = std::fs::read_to_string(&file).expect("figures.json");
     let now = Figures::stored().text();
     if std::env::var_os("BLESS_PHYSICS").is_some() {
@@ -104,11 +104,11 @@ fn every_gait_keeps_its_way_over_edges_and_blocks_and_its_turn_on_every_floor() 
     // The check fails for a robot that an edge keeps from moving or turning, or that turns in the wrong direction.
     let stopped = Displacement([0.0; 3]);
     for (gait, losses) in [("walk", 1), ("back", 1), ("left", 1), ("arc-right", 2)] {
-        let level = surface::level(&figures, gait);
+        let level = surface::level_displacement(&figures, gait);
         let found = surface::excess_losses(Surface::Edge(20), level, stopped);
         assert_eq!(found.len(), losses, "{gait}: {found:?}");
     }
-    let [left, right] = ["left", "right"].map(|gait| surface::level(&figures, gait));
+    let [left, right] = ["left", "right"].map(|gait| surface::level_displacement(&figures, gait));
     assert_eq!(
         surface::excess_losses(Surface::Slope(8), left, right),
         ["-14.9 deg a cycle of 14.9 on a level floor; 0.75 must be kept"]
@@ -123,16 +123,16 @@ fn every_foot_is_before_the_edge_at_the_start_and_past_it_at_the_end_but_of_gait
         let feet = robot(name).ground().feet.positions([0.0; 4]);
         for (gait, level) in surface::gaits(&figures, name) {
             let crossing = Crossing::of(&robot(name), level, 0);
-            if !crossing.passes {
+            if !crossing.is_crossed {
                 turns.push(gait);
                 continue;
             }
             let block = crossing.block(2.0);
             // The edge as a line: a point on it and the direction across it, computed from the block alone, so
             // that a wrong block is noticed.
-            let (sin, cos) = block.turned.to_radians().sin_cos();
+            let (sin, cos) = block.rotation.to_radians().sin_cos();
             let half = block.size[1] / 2.0;
-            let edge = [block.at[0] + half * sin, block.at[1] - half * cos];
+            let edge = [block.centre[0] + half * sin, block.centre[1] - half * cos];
             let beyond =
                 |[right, ahead]: [f64; 2]| (ahead - edge[1]) * cos - (right - edge[0]) * sin;
             let mut pose = [0.0; 3];
@@ -178,7 +178,10 @@ fn moved([x, y, turn]: [f64; 3], [ahead, left, by]: [f64; 3]) -> [f64; 3] {
 #[test]
 fn every_other_assumption_and_pad_is_stored_as_it_is_written() {
     let (assumed, shapes) = (assumptions::stored(), pads::stored());
-    for Assumption { words, .. } in Assumption::ALL {
+    for Assumption {
+        description: words, ..
+    } in Assumption::ALL
+    {
         assert_eq!(assumed[words].len(), assumptions::GAITS.len(), "{words}");
     }
     assert_eq!(assumed.len(), Assumption::ALL.len());
@@ -192,7 +195,7 @@ fn every_other_assumption_and_pad_is_stored_as_it_is_written() {
         ("surfaces.json", blocks(&surface::stored())),
     ] {
         assert_eq!(
-            std::fs::read_to_string(here().join(file)).expect(file),
+            std::fs::read_to_string(crate_folder().join(file)).expect(file),
             text
         );
     }
@@ -283,7 +286,8 @@ fn a_foot_a_millimetre_too_long_costs_less_than_a_tenth_of_the_distance() {
 
 #[test]
 fn every_key_that_a_trial_sets_is_valid_in_robot_toml() {
-    let text = std::fs::read_to_string(here().join("../../robots/paper.toml")).expect("paper");
+    let text =
+        std::fs::read_to_string(crate_folder().join("../../robots/paper.toml")).expect("paper");
     let table = expected(&robot("paper"));
     let keys = table.lines().skip(2).flat_map(|line| {
         let cell = line.rsplit(" | ").next().expect("a key");

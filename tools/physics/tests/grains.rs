@@ -3,7 +3,7 @@
 //! With `BLESS_PHYSICS=1` the speeds are written into docs/gaits.md and robots/grain.toml, as `make docs` does.
 
 use lizard_physics::grains::{self, GAITS, Grains, RATIOS};
-use lizard_physics::{here, robot};
+use lizard_physics::{crate_folder, robot};
 
 /// Returns the speeds of a gait at a friction ratio, by the model, if known, and by MuJoCo. `part` is the index
 /// in the displacement: 0 for mm/s ahead, 2 for deg/s of turn.
@@ -19,7 +19,7 @@ fn speeds(kept: &Grains, gait: &str, ratio: f64, part: usize) -> Vec<f64> {
 
 /// Compares a file's text between `begin` and `end` with `wanted`; replaces it if `BLESS_PHYSICS` is set.
 fn block(path: &str, begin: &str, end: &str, wanted: &str) {
-    let file = here().join("../..").join(path);
+    let file = crate_folder().join("../..").join(path);
     let text = std::fs::read_to_string(&file).expect(path);
     let start = text.find(begin).expect(begin) + begin.len();
     let stop = start + text[start..].find(end).expect(end);
@@ -44,7 +44,7 @@ fn the_page_and_the_robots_file_have_the_speeds_of_model_and_engine() {
 #[test]
 fn every_speed_is_stored_as_it_is_read_and_close_to_the_model() {
     let kept = grains::stored();
-    let text = std::fs::read_to_string(here().join("grains.json")).expect("grains.json");
+    let text = std::fs::read_to_string(crate_folder().join("grains.json")).expect("grains.json");
     assert_eq!(text, grains::text(&kept));
     assert_eq!(grains::disagreements(&kept), Vec::<String>::new());
     for (gait, _) in GAITS {

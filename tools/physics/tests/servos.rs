@@ -2,7 +2,7 @@
 //!
 //! With `BLESS_PHYSICS=1` the table is written into docs/judges.md, as `make docs` does.
 
-use lizard_physics::here;
+use lizard_physics::crate_folder;
 use lizard_physics::servos::{GAITS, Variant, servos_table, stored, text};
 
 #[test]
@@ -29,13 +29,13 @@ fn a_servo_that_cannot_follow_loses_in_the_model_what_it_loses_in_mujoco() {
     }
     let all: usize = stored.values().map(std::collections::BTreeMap::len).sum();
     assert_eq!(all, count, "and no others are stored");
-    let file = std::fs::read_to_string(here().join("servos.json")).expect("servos.json");
+    let file = std::fs::read_to_string(crate_folder().join("servos.json")).expect("servos.json");
     assert_eq!(file, text(&stored));
 }
 
 #[test]
 fn the_page_has_the_ways_of_model_and_mujoco() {
-    let file = here().join("../../docs/judges.md");
+    let file = crate_folder().join("../../docs/judges.md");
     let page = std::fs::read_to_string(&file).expect("judges.md");
     let begin = "<!-- servos of robots/paper.toml -->\n";
     let start = page.find(begin).expect(begin) + begin.len();

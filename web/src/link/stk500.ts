@@ -1,5 +1,4 @@
-// Writes the flash of a UNO through optiboot, its boot loader, by the protocol STK500 version 1, as `avrdude -c
-// arduino` does.
+// Writes the flash of a UNO through optiboot, its boot loader: STK500 version 1, as with avrdude's `-c arduino`.
 import { load } from '../../../tools/judge/src/hex.js';
 import { BOOT } from '../uno/board';
 import { WORDS } from '../words';

@@ -2,7 +2,7 @@
 
 use lizard_kinematics::Vector;
 use lizard_parts::{
-    Assembly, Bill, File, Meeting, Mount, Part, Placement, PrintToBody, Step, Unfit, coupon,
+    Assembly, Bill, BuildProblem, File, Meeting, Mount, Part, Placement, PrintToBody, Step, coupon,
     papers, part_files, steps,
 };
 use lizard_robot::Robot;
@@ -29,8 +29,8 @@ impl Refused {
     }
 }
 
-impl From<Unfit> for Refused {
-    fn from(unfit: Unfit) -> Self {
+impl From<BuildProblem> for Refused {
+    fn from(unfit: BuildProblem) -> Self {
         Self {
             meeting: unfit.meeting(),
             ..Self::of(unfit)
@@ -205,21 +205,24 @@ impl Model {
                 let angle = angles[servo] - FORWARD[servo] * lag[servo];
                 (angle, plans[servo].at(angles[servo], angle))
             };
-            let Placement { at, turn } = match mount {
+            let Placement {
+                origin: at,
+                x_axis: turn,
+            } = match mount {
                 Mount::Crank(servo) | Mount::Follower(servo) => Placement {
-                    turn: Vector::direction(leg(servo).0),
+                    x_axis: Vector::direction(leg(servo).0),
                     ..as_led
                 },
                 Mount::Foot(servo) => Placement {
-                    at: leg(servo).1.joints[0],
+                    origin: leg(servo).1.joints[0],
                     ..as_led
                 },
                 Mount::Strut(servo) => {
                     let [from, to] = leg(servo).1.strut;
                     let along = to - from;
                     Placement {
-                        at: from,
-                        turn: along * (1.0 / along.length()),
+                        origin: from,
+                        x_axis: along * (1.0 / along.length()),
                     }
                 }
                 _ => as_led,
@@ -263,9 +266,9 @@ impl Model {
     /// Returns the worst two parts.
     pub fn prove(&self, progress: impl FnMut(usize, usize)) -> Result<Proved, Refused> {
         let proof = self.assembly.prove(progress);
-        proof.judge().map_err(Unfit::from)?;
+        proof.judge().map_err(BuildProblem::from)?;
         Ok(Proved {
-            least: proof.least().map(|near| near.proved),
+            least: proof.nearest().map(|near| near.proved),
         })
     }
 }
@@ -289,9 +292,12 @@ fn matrix(motion: Option<PrintToBody>) -> [f64; 16] {
         lift,
         frame,
     } = motion.unwrap_or(as_it_lies);
-    let Placement { at, turn } = frame;
+    let Placement {
+        origin: at,
+        x_axis: turn,
+    } = frame;
     let over = if flipped { -1.0 } else { 1.0 };
-    let across = turn.left() * over;
+    let across = turn.rotated_left() * over;
     [
         turn.x, turn.y, 0.0, 0.0, across.x, across.y, 0.0, 0.0, 0.0, 0.0, over, 0.0, at.x, at.y,
         lift, 1.0,

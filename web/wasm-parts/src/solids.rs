@@ -24,7 +24,7 @@ impl Model {
     pub fn solids(&self) -> Result<Vec<Triangles>, Refused> {
         let printed = self
             .needed()
-            .map(|part| mesh(&part.name, &part.printed().0));
+            .map(|part| mesh(&part.name, &part.printed_layers().0));
         let bought = self
             .bought_bodies()
             .map(|body| mesh(&body.name, &body.prisms));
@@ -40,7 +40,7 @@ impl Model {
 fn mesh(name: &str, prisms: &[Prism]) -> Result<Triangles, Refused> {
     let mesh = Mesh::of(&Solid::of(prisms));
     if !mesh.is_closed() {
-        return Err(lizard_parts::Unfit::Surface(name.to_owned()).into());
+        return Err(lizard_parts::BuildProblem::Surface(name.to_owned()).into());
     }
     let corners = mesh.corners.as_flattened().iter();
     let triangles = mesh.triangles.as_flattened().iter();

@@ -32,7 +32,7 @@ export interface Calibration {
 #[must_use]
 #[wasm_bindgen(js_name = readCalibration, unchecked_return_type = "Calibration | null")]
 pub fn read_calibration(lines: Vec<String>) -> JsValue {
-    js(Calibration::of_lines(&lines))
+    js(Calibration::from_lines(&lines))
 }
 
 /// Reads a calibration from the text of a file; `name` is the file's name in the error.

@@ -5,7 +5,7 @@
 
 use lizard_core::control::supply::Reading;
 use lizard_core::memory::restart::Restart;
-use lizard_core::virtual_board::{Eeprom, Running};
+use lizard_core::virtual_board::{Eeprom, RunningRobot};
 use lizard_robot::{CoreRobot, healthy_rail_mv};
 use serde::Serialize;
 use tsify::Tsify;
@@ -25,7 +25,7 @@ pub struct CoreFrame {
 
 /// The core of a robot, running.
 pub struct CoreRun {
-    running: Running,
+    running: RunningRobot,
     /// Voltage at the measuring pin while the servos' rail is healthy, mV; 0 if the rail is not measured.
     rail_mv: f64,
 }
@@ -36,7 +36,7 @@ impl CoreRun {
     pub fn begin(robot: CoreRobot, memory: Eeprom) -> Self {
         Self {
             rail_mv: healthy_rail_mv(&robot.supplies()).unwrap_or(0.0),
-            running: Running::with(robot, memory, Restart::default()),
+            running: RunningRobot::with_memory(robot, memory, Restart::default()),
         }
     }
 

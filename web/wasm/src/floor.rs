@@ -1,6 +1,6 @@
 //! The values of the page's sliders: floor, mass, feet, and leg drive.
 
-use lizard_robot::{Body, Drive, Ground, Kind, Robot, Stance};
+use lizard_robot::{Body, Drive, DriveKind, Ground, Robot, Stance};
 use serde::{Deserialize, Serialize};
 use tsify::Tsify;
 
@@ -24,10 +24,10 @@ impl Legs {
         }
     }
 
-    fn of(kind: &Kind) -> Self {
+    fn of(kind: &DriveKind) -> Self {
         match kind {
-            Kind::Rigid => Self::Rigid,
-            Kind::Strut(_) => Self::Strut,
+            DriveKind::Rigid => Self::Rigid,
+            DriveKind::Strut(_) => Self::Strut,
         }
     }
 }
@@ -121,8 +121,8 @@ impl Floor {
             },
             drive: Drive {
                 kind: match floor.kind {
-                    Legs::Strut => Kind::Strut(robot.strut_with(floor.force, floor.rate)),
-                    Legs::Rigid => Kind::Rigid,
+                    Legs::Strut => DriveKind::Strut(robot.strut_with(floor.force, floor.rate)),
+                    Legs::Rigid => DriveKind::Rigid,
                 },
                 play: floor.play,
             },

@@ -100,7 +100,7 @@ impl Scene {
             .solve(&pose)
             .map_err(|fault| fault.to_string())?;
         let shape = Shape::at_solution(robot, &solution, twin.legs());
-        let sprung = twin.ground().drive.kind != lizard_robot::Kind::Rigid;
+        let sprung = twin.ground().drive.kind != lizard_robot::DriveKind::Rigid;
         let named = |(check, value): (Check, f64)| Margin {
             name: check.name(),
             value,

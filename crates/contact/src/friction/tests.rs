@@ -59,7 +59,8 @@ fn certificate(pads: &Pads, displacement: &Displacement) -> ([f64; 3], f64) {
         work += along(pads.swing[i]);
         if let Some(compliance) = pads.compliance {
             let torque = along(compliance.lag_derivatives[i]);
-            work += torque * compliance.before[i] - compliance.lag_energy[i].conjugate(torque);
+            work +=
+                torque * compliance.previous_lags[i] - compliance.lag_energy[i].conjugate(torque);
         }
         net[0] += force[0];
         net[1] += force[1];
@@ -181,7 +182,7 @@ proptest! {
         let drive = LagEnergy { play, stop: STOP, lower: Side::Stop, upper, motor: None };
         let compliance = Some(Compliance {
             lag_derivatives: [[45.0, 0.0]; 4],
-            before: within.map(|share| share * play),
+            previous_lags: within.map(|share| share * play),
             lag_energy: [drive; 4],
         });
         assert_least(&Pads { at: AT, swing, ratio: 1.0, load, compliance, body: None });

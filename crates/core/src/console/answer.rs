@@ -42,7 +42,7 @@ pub enum Answer {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
     /// Pulse edges that came late.
-    pub late: u16,
+    pub late_edges: u16,
     /// Received bytes that were lost.
     pub rx_lost: u16,
 }

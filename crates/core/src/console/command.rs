@@ -173,7 +173,7 @@ fn parse_among<const FIRST_YIELDING: usize>(
         Word::Speed => Order::Speed(number as u8),
         Word::Trim => order_setting(Setting::Trim(Sweep(number as i16))),
         Word::Limit => order_setting(Setting::Limit(Angle(number), Angle(second))),
-        Word::Dir => order_setting(Setting::Direct(number != 0)),
+        Word::Dir => order_setting(Setting::Direction(number != 0)),
         Word::Scale => order_setting(Setting::Scale(number)),
         Word::Save => Order::Save,
         Word::Load => Order::Load,

@@ -8,14 +8,14 @@ use crate::console::answer::{Answer, Counters};
 use crate::console::command::{self, Command, Misread};
 use crate::console::digits;
 use crate::console::finder::RateFinder;
-use crate::console::line::{Ended, GARBLED, Line};
+use crate::console::line::{GARBLED, Line, LineEnd};
 use crate::console::output::Output;
 use crate::console::print;
 use crate::console::refusal;
 use crate::console::text::Text;
 use crate::console::watch::Watch;
 use crate::control::Control;
-use crate::control::order::Accepted;
+use crate::control::order::Acceptance;
 use crate::control::refusal::Refusal;
 use crate::control::safety::Notice;
 use crate::numbers::gaits::GaitId;
@@ -114,9 +114,9 @@ impl Console {
             return;
         };
         let answer = match ended {
-            Ended::Line => self.obey(control),
-            Ended::TooLong => Err(Answer::Misread(Misread::TooLong)),
-            Ended::Garbled => Err(Answer::Misread(Misread::Garbled)),
+            LineEnd::Line => self.execute_line(control),
+            LineEnd::TooLong => Err(Answer::Misread(Misread::TooLong)),
+            LineEnd::Garbled => Err(Answer::Misread(Misread::Garbled)),
         };
         self.answer = answer.unwrap_or_else(Some);
     }
@@ -124,7 +124,7 @@ impl Console {
     /// Executes the received line. Returns `Ok(None)` if the order has to wait for the EEPROM; then
     /// [`Console::finish_order`] has to follow.
     #[inline(never)]
-    fn obey(&mut self, control: &mut Control) -> Result<Option<Answer>, Answer> {
+    fn execute_line(&mut self, control: &mut Control) -> Result<Option<Answer>, Answer> {
         let robot = control.motion().robot();
         let text = self.line.text();
         let mut command = command::parse(text, robot);
@@ -151,8 +151,8 @@ impl Console {
                 Some(Answer::Done)
             }
             Command::Order(order) => match control.execute(&order).map_err(Answer::Refused)? {
-                Accepted::Done => Some(Answer::Done),
-                Accepted::Later => None,
+                Acceptance::Done => Some(Answer::Done),
+                Acceptance::Later => None,
             },
         })
     }

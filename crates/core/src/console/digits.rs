@@ -10,14 +10,14 @@ use crate::numbers::robot::Robot;
 use crate::numbers::units::Sine;
 
 /// Prints ASCII bytes; clears the highest bit of each.
-pub fn ascii(out: &mut impl Output, bytes: impl Iterator<Item = u8>) {
+pub fn print_ascii(out: &mut impl Output, bytes: impl Iterator<Item = u8>) {
     for byte in bytes {
         out.byte(byte & 0x7f);
     }
 }
 
 /// Prints the four chassis angles of a pose in degrees, with commas between them.
-pub fn angles(out: &mut impl Output, pose: &Pose, robot: &Robot) {
+pub fn print_angles(out: &mut impl Output, pose: &Pose, robot: &Robot) {
     for servo in Servo::all() {
         if servo != Servo::A1 {
             out.byte(b',');
@@ -72,7 +72,7 @@ pub fn print_count(out: &mut impl Output, text: Text, count: u32) {
 }
 
 /// Prints a number that may be negative, with `decimals` decimals.
-pub fn signed(out: &mut impl Output, value: i32, decimals: usize) {
+pub fn print_signed(out: &mut impl Output, value: i32, decimals: usize) {
     if value < 0 {
         out.byte(b'-');
     }
@@ -80,8 +80,8 @@ pub fn signed(out: &mut impl Output, value: i32, decimals: usize) {
 }
 
 /// Prints a margin with three decimals.
-pub fn sine(out: &mut impl Output, sine: Sine) {
-    signed(out, sine.thousandths().into(), 3)
+pub fn print_sine(out: &mut impl Output, sine: Sine) {
+    print_signed(out, sine.thousandths().into(), 3)
 }
 
 #[cfg(test)]
@@ -129,7 +129,7 @@ mod tests {
     fn a_negative_number_has_its_sign_and_zero_has_none() {
         for value in (-33_000..33_000).chain([i32::MIN, i32::MAX]) {
             let mut text = String::new();
-            signed(&mut text, value, 3);
+            print_signed(&mut text, value, 3);
             let sign = if value < 0 { "-" } else { "" };
             assert_eq!(text, format!("{sign}{}", expected(value.unsigned_abs(), 3)));
         }
@@ -141,7 +141,7 @@ mod tests {
         let centideg = [0, 4_141, 31_860, 35_999];
         let robot = Sample::odd();
         let pose = Pose::at(&centideg.map(Angle::from_centideg), &robot.neutral());
-        angles(&mut text, &pose, &robot);
+        print_angles(&mut text, &pose, &robot);
         assert_eq!(text, "0.00,41.41,318.60,359.99");
     }
 

@@ -10,7 +10,7 @@ pub const MAX_BYTES: usize = 63;
 
 /// The result of a line end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ended {
+pub enum LineEnd {
     /// A line, to be read with [`Line::text`].
     Line,
     /// A line that was longer than [`MAX_BYTES`]; all of it is dropped.
@@ -46,7 +46,7 @@ impl Line {
 
     /// Takes a byte; the byte after a line end begins a new line. Returns the result of a line end, or
     /// `None` if the byte is no line end or the line is blank.
-    pub fn push(&mut self, byte: u8) -> Option<Ended> {
+    pub fn push(&mut self, byte: u8) -> Option<LineEnd> {
         if self.has_ended {
             *self = Self::new();
         }
@@ -79,16 +79,16 @@ impl Line {
         self.bytes.trim_ascii()
     }
 
-    fn end(&mut self) -> Option<Ended> {
+    fn end(&mut self) -> Option<LineEnd> {
         self.has_ended = true;
         if self.is_garbled {
-            Some(Ended::Garbled)
+            Some(LineEnd::Garbled)
         } else if self.is_overlong {
-            Some(Ended::TooLong)
+            Some(LineEnd::TooLong)
         } else if self.text().is_empty() {
             None
         } else {
-            Some(Ended::Line)
+            Some(LineEnd::Line)
         }
     }
 }
@@ -109,8 +109,8 @@ mod tests {
         for byte in bytes {
             match line.push(*byte) {
                 None => {}
-                Some(Ended::TooLong | Ended::Garbled) => ended.push(None),
-                Some(Ended::Line) => {
+                Some(LineEnd::TooLong | LineEnd::Garbled) => ended.push(None),
+                Some(LineEnd::Line) => {
                     ended.push(Some(line.text().iter().copied().map(char::from).collect()));
                 }
             }
@@ -189,8 +189,8 @@ mod tests {
             for back in ["", "\x08", "\x08\x08\x08\x08\x08\x08\x08\x08\x08speed 90"] {
                 let mut line = Line::new();
                 let sent = [&bytes, back.as_bytes(), b"\rstop\r"].concat();
-                let ends: Vec<Ended> = sent.iter().filter_map(|byte| line.push(*byte)).collect();
-                assert_eq!(ends, [Ended::Garbled, Ended::Line]);
+                let ends: Vec<LineEnd> = sent.iter().filter_map(|byte| line.push(*byte)).collect();
+                assert_eq!(ends, [LineEnd::Garbled, LineEnd::Line]);
                 assert_eq!(line.text(), b"stop");
             }
         }

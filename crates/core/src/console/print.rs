@@ -11,7 +11,7 @@ use crate::control::fault::Fault;
 use crate::control::safety::Notice;
 use crate::control::supply::{Level, Voltage};
 use crate::guard::clearance::Clearance;
-use crate::memory::copies::Outcome;
+use crate::memory::copies::SavedState;
 use crate::memory::restart::Cause;
 use crate::memory::settings::Boot;
 use crate::motion::{Activity, Motion};
@@ -64,7 +64,7 @@ pub(super) fn answer(
         Answer::HelpDone => Text::OkHelp.print(out),
         Answer::Done => {
             Text::Ok.print(out);
-            digits::ascii(out, line.text().iter().copied());
+            digits::print_ascii(out, line.text().iter().copied());
         }
         Answer::Status => {
             status(out, control);
@@ -101,7 +101,7 @@ fn gaits(out: &mut impl Output, first: GaitId, robot: &Robot) -> Option<GaitId> 
         }
         length += 1 + name.remaining();
         out.byte(if gait == first { b' ' } else { b'|' });
-        digits::ascii(out, name);
+        digits::print_ascii(out, name);
         match gait.next(robot.gait_count()) {
             Some(next) => gait = next,
             None => return None,
@@ -118,7 +118,7 @@ fn status(out: &mut impl Output, control: &Control) {
         // A gait's name as a value without a blank: `arc-left`.
         Activity::Gait(gait) => {
             let bytes = robot.name(gait);
-            digits::ascii(
+            digits::print_ascii(
                 out,
                 bytes.map(|byte| if byte == b' ' { b'-' } else { byte }),
             );
@@ -143,7 +143,7 @@ fn margin(out: &mut impl Output, motion: &Motion) {
         return;
     }
     Text::StatusMargin.print(out);
-    digits::sine(out, Clearance::of(robot, motion.pose()).smallest());
+    digits::print_sine(out, Clearance::of(robot, motion.pose()).smallest_margin());
     digits::print_count(out, Text::StatusSpeed, motion.speed().into());
     digits::print_count(out, Text::StatusFrames, motion.frames())
 }
@@ -152,7 +152,7 @@ fn margin(out: &mut impl Output, motion: &Motion) {
 /// without voltages before the first reading, and without `rail` if the rail is not measured.
 #[inline(never)]
 fn health(out: &mut impl Output, control: &Control, counters: Counters) {
-    digits::print_count(out, Text::StatusLate, counters.late.into());
+    digits::print_count(out, Text::StatusLate, counters.late_edges.into());
     digits::print_count(out, Text::StatusRxLost, counters.rx_lost.into());
     Text::StatusGuard.print(out);
     match control.motion().hazard() {
@@ -227,7 +227,7 @@ fn boot(out: &mut impl Output, control: &Control) {
     let robot = control.motion().robot();
     match control.settings().boot(robot) {
         Boot::Rest => Text::Rest.print(out),
-        Boot::Gait(id) => digits::ascii(out, robot.name(id)),
+        Boot::Gait(id) => digits::print_ascii(out, robot.name(id)),
     }
 }
 
@@ -235,11 +235,11 @@ fn boot(out: &mut impl Output, control: &Control) {
 pub(super) fn notice(out: &mut impl Output, notice: Notice, control: &Control) {
     match notice {
         Notice::Memory => match control.saved_settings() {
-            Outcome::Latest | Outcome::Blank => Text::MemoryBlank,
-            Outcome::OneCopy => Text::MemoryOther,
-            Outcome::Damaged => Text::MemoryDamaged,
-            Outcome::Foreign => Text::MemoryForeign,
-            Outcome::Unfit => Text::MemoryUnfit,
+            SavedState::Latest | SavedState::Blank => Text::MemoryBlank,
+            SavedState::OneCopy => Text::MemoryOther,
+            SavedState::Damaged => Text::MemoryDamaged,
+            SavedState::Foreign => Text::MemoryForeign,
+            SavedState::Unfit => Text::MemoryUnfit,
         }
         .print(out),
         Notice::NotKept => Text::MemoryNotKept.print(out),
@@ -286,14 +286,14 @@ pub(super) fn notice(out: &mut impl Output, notice: Notice, control: &Control) {
 /// Prints ` pose=` and the chassis angles of the four servos.
 pub(super) fn pose(out: &mut impl Output, motion: &Motion) {
     Text::WatchPose.print(out);
-    digits::angles(out, motion.pose(), motion.robot())
+    digits::print_angles(out, motion.pose(), motion.robot())
 }
 
 /// Prints a sweep in degrees with two decimals.
 fn sweep(out: &mut impl Output, sweep: Sweep) {
     let size = Angle(sweep.0.unsigned_abs()).centideg();
     let centideg = i32::from(size);
-    digits::signed(out, if sweep.0 < 0 { -centideg } else { centideg }, 2)
+    digits::print_signed(out, if sweep.0 < 0 { -centideg } else { centideg }, 2)
 }
 
 /// Prints `# lizard 0.2.0 robot paper 1a2b3c4d, send help for the commands`.
@@ -305,7 +305,7 @@ pub(super) fn banner(out: &mut impl Output, robot: &Robot) {
         return Text::BannerEnd.print(out);
     }
     Text::BannerRobot.print(out);
-    digits::ascii(out, robot.robot_name());
+    digits::print_ascii(out, robot.robot_name());
     out.byte(b' ');
     let hash = robot.hash();
     for digit in 0..8 {

@@ -3,7 +3,7 @@
 //! The codes are part of the protocol and never change their meaning.
 
 use crate::console::command::Misread;
-use crate::console::digits::{print_hundredths, print_number, signed, sine};
+use crate::console::digits::{print_hundredths, print_number, print_signed, print_sine};
 use crate::console::output::Output;
 use crate::console::text::Text;
 use crate::control::refusal::Refusal;
@@ -127,12 +127,12 @@ pub fn print_hazard(hazard: Hazard, motion: &Motion, out: &mut impl Output) {
             };
             if margin.is_known(value) {
                 Text::Is.print(out);
-                sine(out, value);
+                print_sine(out, value);
             } else {
                 Text::IsBelow.print(out);
             }
             Text::AtLeast.print(out);
-            sine(out, limit)
+            print_sine(out, limit)
         }
         Hazard::Stroke { side, length } => {
             match side {
@@ -152,7 +152,7 @@ pub fn print_hazard(hazard: Hazard, motion: &Motion, out: &mut impl Output) {
 #[inline(never)]
 fn print_stroke(text: Text, length: u16, side: Side, robot: &Robot, out: &mut impl Output) {
     text.print(out);
-    signed(out, robot.side(side).travel(length), 2)
+    print_signed(out, robot.side(side).travel(length), 2)
 }
 
 fn print_servo(servo: Servo, out: &mut impl Output) {

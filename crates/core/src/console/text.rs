@@ -195,10 +195,10 @@ const ALPHABET: &[u8; 45] = b" eotsarnldipmgcw0uh.=fb:vk1y2-,x6#z?_3+54'789";
 /// The number of characters with a code of four bits; the four-bit values that remain begin the codes of eight bits.
 const SHORT_CODES: u8 = 12;
 
-const COUNT: usize = MESSAGES.len();
+const MESSAGE_COUNT: usize = MESSAGES.len();
 
 /// The number of packed strings: the messages first, then the phrases.
-const STRINGS: usize = COUNT + PHRASES.len();
+const STRINGS: usize = MESSAGE_COUNT + PHRASES.len();
 
 /// Number of strings in a block. Only the start of each block and the length of each string are stored.
 const BLOCK_STRINGS: usize = 16;
@@ -220,11 +220,11 @@ impl Text {
         // The rest of the message, after the phrase that is being printed.
         let mut rest = PackedString::NONE;
         loop {
-            if part.left == 0 {
+            if part.nibbles_left == 0 {
                 part = rest;
-                rest.left = 0;
+                rest.nibbles_left = 0;
             }
-            if part.left == 0 {
+            if part.nibbles_left == 0 {
                 return;
             }
             let mut code = part.next();
@@ -238,7 +238,7 @@ impl Text {
                 }
                 Some(phrase) => {
                     rest = part;
-                    part = PackedString::of(COUNT as u8 + phrase);
+                    part = PackedString::of(MESSAGE_COUNT as u8 + phrase);
                 }
             }
         }
@@ -254,11 +254,14 @@ impl Text {
 #[derive(Clone, Copy)]
 struct PackedString {
     at: u16,
-    left: u8,
+    nibbles_left: u8,
 }
 
 impl PackedString {
-    const NONE: Self = Self { at: 0, left: 0 };
+    const NONE: Self = Self {
+        at: 0,
+        nibbles_left: 0,
+    };
 
     /// All nibbles of a message or a phrase.
     #[inline(never)]
@@ -271,7 +274,7 @@ impl PackedString {
         }
         Self {
             at,
-            left: length(string),
+            nibbles_left: length(string),
         }
     }
 
@@ -285,7 +288,7 @@ impl PackedString {
             nibbles >> 4
         };
         self.at += 1;
-        self.left -= 1;
+        self.nibbles_left -= 1;
         nibble & 0xf
     }
 }
@@ -335,9 +338,9 @@ const fn pack() -> Packed {
         if string % BLOCK_STRINGS == 0 {
             packed.blocks[string / BLOCK_STRINGS] = start as u16;
         }
-        let is_phrase = string >= COUNT;
+        let is_phrase = string >= MESSAGE_COUNT;
         let text = if is_phrase {
-            PHRASES[string - COUNT].as_bytes()
+            PHRASES[string - MESSAGE_COUNT].as_bytes()
         } else {
             MESSAGES[string].as_bytes()
         };

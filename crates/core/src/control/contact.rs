@@ -14,7 +14,7 @@ const LEVELS: u8 = 0b111;
 
 /// The bit that is set once the contact has been open for three frames, or need not be: only then may it end the
 /// step.
-const READY: u8 = 0b1000;
+const READY_BIT: u8 = 0b1000;
 
 /// The contact that is awaited, and its levels in the last frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,7 +32,7 @@ impl Contact {
     };
 
     /// A contact that must be open first, and then close.
-    pub const fn closing(input: Input) -> Self {
+    pub const fn await_closing(input: Input) -> Self {
         Self {
             input,
             history: LEVELS,
@@ -40,18 +40,18 @@ impl Contact {
     }
 
     /// A contact that must be closed, even if it has been closed from the start.
-    pub const fn closed(input: Input) -> Self {
+    pub const fn await_closed(input: Input) -> Self {
         Self { input, history: 0 }
     }
 
     /// Takes the level of a frame; true once the contact has closed.
-    pub fn frame(&mut self, is_closed: bool) -> bool {
+    pub fn count_frame(&mut self, is_closed: bool) -> bool {
         if self.history & LEVELS == 0 {
-            self.history |= READY;
+            self.history |= READY_BIT;
         }
         let levels = self.history << 1 | u8::from(is_closed);
-        self.history = self.history & READY | levels & LEVELS;
-        self.history == READY | LEVELS
+        self.history = self.history & READY_BIT | levels & LEVELS;
+        self.history == READY_BIT | LEVELS
     }
 }
 
@@ -65,14 +65,14 @@ mod tests {
     /// The frames in which a contact counts as closed; in `levels`, `#` is a frame with a closed contact.
     fn closes(mut contact: Contact, levels: &str) -> Vec<usize> {
         let frames = levels.bytes().enumerate();
-        let closed = frames.filter(|(_, level)| contact.frame(*level == b'#'));
+        let closed = frames.filter(|(_, level)| contact.count_frame(*level == b'#'));
         closed.map(|(frame, _)| frame).collect()
     }
 
     #[test]
     fn a_contact_closes_in_the_third_frame_in_a_row() {
         let input = Input::button(15);
-        for contact in [Contact::closing(input), Contact::closed(input)] {
+        for contact in [Contact::await_closing(input), Contact::await_closed(input)] {
             assert_eq!(closes(contact, "....###"), [6]);
             assert_eq!(closes(contact, "....##.##.#.#.##.###."), [19]);
             assert!(closes(contact, "...##..##..#..##.##.#").is_empty());
@@ -82,11 +82,11 @@ mod tests {
     #[test]
     fn a_contact_closed_from_the_start_ends_a_walk_but_no_wait_until_it_was_open() {
         let input = Input::nose(16);
-        assert_eq!(closes(Contact::closed(input), "###"), [2]);
+        assert_eq!(closes(Contact::await_closed(input), "###"), [2]);
         let stuck: String = "#".repeat(1000);
-        assert!(closes(Contact::closing(input), &stuck).is_empty());
-        assert_eq!(closes(Contact::closing(input), "####...###"), [9]);
+        assert!(closes(Contact::await_closing(input), &stuck).is_empty());
+        assert_eq!(closes(Contact::await_closing(input), "####...###"), [9]);
         // Too short to have been open.
-        assert!(closes(Contact::closing(input), "####..####.##").is_empty());
+        assert!(closes(Contact::await_closing(input), "####..####.##").is_empty());
     }
 }

@@ -9,15 +9,15 @@ use lizard_avr::Region;
 
 use crate::control::contact::Contact;
 use crate::control::fault::Fault;
-use crate::control::order::{Accepted, Order};
+use crate::control::order::{Acceptance, Order};
 use crate::control::refusal::Refusal;
 use crate::control::safety::{Health, Notice, Reaction, Safety};
 use crate::control::supervisor::{
-    self, BROWN_OUTS, Event, FirstAction, Response, ServosBefore, State,
+    self, BROWN_OUTS_TO_REST, Event, FirstAction, Response, ServosBefore, State,
 };
 use crate::control::supply::Voltage;
 use crate::guard::hazard::Hazard;
-use crate::memory::copies::{self, Outcome, REST_POSE};
+use crate::memory::copies::{self, REST_POSE, SavedState};
 use crate::memory::record::{Memory, Writing};
 use crate::memory::restart::{Cause, Restart, Stance};
 use crate::memory::settings::{Boot, Settings};
@@ -49,7 +49,7 @@ pub struct Control {
     /// The reason why the flash holds no usable robot.
     damage: Option<Damage>,
     /// The state of the saved settings at power-on.
-    saved_settings: Outcome,
+    saved_settings: SavedState,
     safety: Safety,
     /// The cause of the last reset.
     cause: Cause,
@@ -88,7 +88,7 @@ impl Control {
             settings: Settings::NONE,
             motion: Motion::unstarted(Robot::NONE),
             damage: None,
-            saved_settings: Outcome::Latest,
+            saved_settings: SavedState::Latest,
             safety: Safety::new(),
             cause: Cause::Power,
             restarts: 0,
@@ -118,19 +118,19 @@ impl Control {
         }
         self.may_be_supply = restart.may_be_supply;
         self.saved_settings = copies::load(self.motion.robot(), memory, &mut self.settings);
-        if self.saved_settings != Outcome::Latest {
+        if self.saved_settings != SavedState::Latest {
             self.safety.notify(Notice::Memory);
         }
         self.apply_calibration();
-        let before = match &restart.before {
-            None => ServosBefore::Nothing,
+        let before = match &restart.stance_before {
+            None => ServosBefore::Unknown,
             Some(stance) if stance.is_resting => ServosBefore::Rested,
             Some(_) => ServosBefore::Held,
         };
-        let brown_outs = restart.brown_outs.min(BROWN_OUTS - 1);
+        let brown_outs = restart.brown_outs.min(BROWN_OUTS_TO_REST - 1);
         self.brown_outs = match restart.may_be_supply {
             true => brown_outs + 1,
-            false => restart.brown_outs.min(BROWN_OUTS),
+            false => restart.brown_outs.min(BROWN_OUTS_TO_REST),
         };
         let (first_action, fault) =
             supervisor::first_action(restart.cause, self.brown_outs, before);
@@ -139,18 +139,18 @@ impl Control {
             self.safety.record_fault(fault);
         }
         let rested = copies::last_rest_pose(self.motion.robot(), memory);
-        let stance = restart.before.as_ref();
+        let stance = restart.stance_before.as_ref();
         let is_awake = match (first_action, stance) {
             (FirstAction::Wake, _) => {
                 self.motion.wake(rested.as_ref());
                 true
             }
-            (FirstAction::TakeOver, Some(stance)) => self.motion.resume(stance, true),
+            (FirstAction::WakeInPlace, Some(stance)) => self.motion.resume(stance, true),
             (FirstAction::Hold, Some(stance)) => self.motion.resume(stance, false),
             _ => false,
         };
         if is_awake {
-            self.rest_record = Some(REST_POSE.invalidate());
+            self.rest_record = Some(REST_POSE.start_invalidation());
             return;
         }
         // A program that hung before its first frame has moved nothing since the rest.
@@ -161,8 +161,8 @@ impl Control {
         self.motion.resume_rest(stance.or(at_rest.as_ref()));
         // The pose may not have reached the memory yet.
         let is_saved =
-            before == ServosBefore::Nothing || rested.as_ref() == Some(self.motion.pose());
-        self.rest_record = (!is_saved).then(|| REST_POSE.write());
+            before == ServosBefore::Unknown || rested.as_ref() == Some(self.motion.pose());
+        self.rest_record = (!is_saved).then(|| REST_POSE.start_write());
     }
 
     /// Computes the pulses of the next frame. To be called 50 times a second.
@@ -236,7 +236,9 @@ impl Control {
     /// The voltage of the supply, the chip's or the servos' rail, that restricts the robot more.
     #[inline(never)]
     pub fn voltage(&self) -> Voltage {
-        self.safety.supply().worst(&self.motion.robot().supplies())
+        self.safety
+            .supply()
+            .worst_voltage(&self.motion.robot().supplies())
     }
 
     /// The present activity: the running routine, unless it rests; otherwise the motion's.
@@ -275,7 +277,7 @@ impl Control {
         } else {
             self.settings.deadman()
         };
-        match self.safety.frame(health, &supplies, state, deadman) {
+        match self.safety.check_frame(health, &supplies, state, deadman) {
             Reaction::None => {}
             Reaction::Freeze => self.stop(),
             Reaction::EndPulses => {
@@ -297,7 +299,7 @@ impl Control {
             Boot::Gait(gait) => {
                 self.start(gait, 0);
                 self.is_unattended = true;
-                self.rest_record = Some(REST_POSE.invalidate());
+                self.rest_record = Some(REST_POSE.start_invalidation());
             }
             Boot::Rest => self.rest(),
         }
@@ -309,7 +311,7 @@ impl Control {
     /// # Errors
     /// Returns the reason of the refusal; nothing has changed.
     #[inline(never)]
-    pub fn execute(&mut self, order: &Order) -> Result<Accepted, Refusal> {
+    pub fn execute(&mut self, order: &Order) -> Result<Acceptance, Refusal> {
         if self.motion.robot().is_none() {
             return Err(Refusal::NoRobot);
         }
@@ -348,19 +350,19 @@ impl Control {
             Order::Deadman(ms) => self.settings.set_deadman(*ms),
             Order::Factory => {
                 let factory = Settings::of(self.motion.robot());
-                self.replace(&factory)?;
+                self.replace_settings(&factory)?;
             }
             Order::Save => {
                 self.check_allowed(Event::Save)?;
                 self.job = Some(Job::Save);
-                return Ok(Accepted::Later);
+                return Ok(Acceptance::Later);
             }
             Order::Load => {
                 self.job = Some(Job::Load);
-                return Ok(Accepted::Later);
+                return Ok(Acceptance::Later);
             }
         }
-        Ok(Accepted::Done)
+        Ok(Acceptance::Done)
     }
 
     /// Looks the order up in the supervisor's table; true if it is to be obeyed, false if there is nothing to do.
@@ -399,13 +401,13 @@ impl Control {
         self.routine = Routine::NONE;
         self.safety.clear_fault();
         self.brown_outs = 0;
-        self.rest_record = Some(REST_POSE.invalidate());
+        self.rest_record = Some(REST_POSE.start_invalidation());
     }
 
     /// Ends the pulses and saves the pose for the next power-on.
     fn rest(&mut self) {
         self.routine = Routine::NONE;
         self.motion.rest();
-        self.rest_record = Some(REST_POSE.write());
+        self.rest_record = Some(REST_POSE.start_write());
     }
 }

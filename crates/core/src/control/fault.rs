@@ -36,13 +36,13 @@ impl Fault {
 }
 
 /// Frames for which a flash is lit, and frames for which the LED is dark after it.
-const FLASH: u8 = 8;
+const FLASH_FRAMES: u8 = 8;
 
 /// Frames of the pause after the flashes.
-const PAUSE: u8 = 48;
+const PAUSE_FRAMES: u8 = 48;
 
 /// Frames for which the slow beat of a robot without a fault is lit, and then dark.
-const BEAT: u8 = 32;
+const BEAT_FRAMES: u8 = 32;
 
 /// The pattern that the LED shows.
 #[derive(Clone, Copy, Debug, Default)]
@@ -63,8 +63,8 @@ impl Led {
     pub fn advance(&mut self, fault: Option<Fault>) -> bool {
         let code = fault.map_or(0, Fault::code);
         let period = match code {
-            0 => 2 * BEAT,
-            code => 2 * FLASH * code + PAUSE,
+            0 => 2 * BEAT_FRAMES,
+            code => 2 * FLASH_FRAMES * code + PAUSE_FRAMES,
         };
         if code == self.code {
             self.frames += 1;
@@ -73,9 +73,9 @@ impl Led {
             *self = Self { frames: 0, code };
         }
         if code == 0 {
-            self.frames < BEAT
+            self.frames < BEAT_FRAMES
         } else {
-            self.frames < 2 * FLASH * code && self.frames & FLASH == 0
+            self.frames < 2 * FLASH_FRAMES * code && self.frames & FLASH_FRAMES == 0
         }
     }
 }

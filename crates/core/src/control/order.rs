@@ -40,7 +40,7 @@ pub enum Setting {
     /// The correction of the horn's angle, at most 20 deg in either direction.
     Trim(Sweep),
     /// True if a longer pulse turns the servo counter-clockwise.
-    Direct(bool),
+    Direction(bool),
     /// Hundredths of a microsecond per degree, 500..=2000.
     Scale(u16),
     /// The limits of the travel as chassis angles, the clockwise limit first.
@@ -49,7 +49,7 @@ pub enum Setting {
 
 /// The progress of an order that was accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Accepted {
+pub enum Acceptance {
     /// The order is done, or its motion has begun.
     Done,
     /// The EEPROM is being written or read; the outcome follows later.

@@ -17,7 +17,7 @@ pub struct Health {
     /// The last reading of the supplies.
     pub supply: Reading,
     /// Pulse edges that have come late so far.
-    pub late: u16,
+    pub late_edges: u16,
     /// True while the stack has not grown into the data.
     pub is_stack_intact: bool,
     /// True while the contact at the pin that the control waits for is closed.
@@ -29,7 +29,7 @@ impl Default for Health {
     fn default() -> Self {
         Self {
             supply: Reading::default(),
-            late: 0,
+            late_edges: 0,
             is_stack_intact: true,
             is_closed: false,
         }
@@ -57,10 +57,10 @@ pub struct Safety {
     led: Led,
     is_lit: bool,
     /// Late edges that have been handled as faults.
-    late: u16,
+    handled_late_edges: u16,
     /// Milliseconds since the last command, up to 65535.
-    silence: u16,
-    /// Frames since power-on, up to [`BOOT_AFTER`]: then `boot` is done or cancelled.
+    silence_ms: u16,
+    /// Frames since power-on, up to [`FRAMES_TO_BOOT`]: then `boot` is done or cancelled.
     boot_timer: u8,
     /// The notices that wait to be printed, a bit for each [`Notice`].
     notices: u8,
@@ -87,7 +87,7 @@ pub enum Notice {
 }
 
 /// The number of notices.
-const NOTICES: u8 = 7;
+const NOTICE_COUNT: u8 = 7;
 
 impl Notice {
     /// The notice at an index, in the order in which they are printed.
@@ -105,7 +105,7 @@ impl Notice {
 }
 
 /// Frames from power-on to `boot`, three seconds.
-const BOOT_AFTER: u8 = 3 * FRAMES_PER_SECOND as u8;
+const FRAMES_TO_BOOT: u8 = 3 * FRAMES_PER_SECOND as u8;
 
 impl Default for Safety {
     fn default() -> Self {
@@ -121,8 +121,8 @@ impl Safety {
             fault: None,
             led: Led::new(),
             is_lit: false,
-            late: 0,
-            silence: 0,
+            handled_late_edges: 0,
+            silence_ms: 0,
             boot_timer: 0,
             notices: 0,
         }
@@ -150,7 +150,7 @@ impl Safety {
 
     /// True if the supply is good enough to write the EEPROM; false until it is measured.
     pub fn allows_writing(&self) -> bool {
-        self.supply.measured() == Some(Level::Good)
+        self.supply.measured_level() == Some(Level::Good)
     }
 
     /// True if the EEPROM may be written at this moment, so not during a dip.
@@ -161,12 +161,12 @@ impl Safety {
     /// The supervisor's response to an event.
     #[inline(never)]
     pub fn response(&self, event: Event, state: State) -> Response {
-        supervisor::response(event, self.supply.measured(), state)
+        supervisor::response(event, self.supply.measured_level(), state)
     }
 
     /// Checks a frame's health and returns the reaction. A gait ends after `deadman` milliseconds without a command
     /// (0: never), and no sooner.
-    pub fn frame(
+    pub fn check_frame(
         &mut self,
         health: &Health,
         supplies: &Supplies,
@@ -174,42 +174,42 @@ impl Safety {
         deadman: u16,
     ) -> Reaction {
         let mut reaction = Reaction::None;
-        self.silence = self.silence.saturating_add(FRAME_MS);
-        if self.boot_timer < BOOT_AFTER {
+        self.silence_ms = self.silence_ms.saturating_add(FRAME_MS);
+        if self.boot_timer < FRAMES_TO_BOOT {
             self.boot_timer += 1;
-            if self.boot_timer == BOOT_AFTER
+            if self.boot_timer == FRAMES_TO_BOOT
                 && self.fault.is_none()
                 && self.response(Event::Boot, state) == Response::Obey
             {
-                self.silence = 0;
+                self.silence_ms = 0;
                 reaction = Reaction::Boot;
             }
         }
         // The last command may have come at the end of the first frame counted, so that frame is subtracted.
-        if deadman != 0 && self.silence.saturating_sub(FRAME_MS) >= deadman {
-            reaction = reaction.max(self.handle(Event::Silence, state));
+        if deadman != 0 && self.silence_ms.saturating_sub(FRAME_MS) >= deadman {
+            reaction = reaction.max(self.handle_event(Event::Silence, state));
         }
         if self.supply.measure(health.supply, supplies) {
             self.notify(Notice::Supply);
             reaction = reaction.max(match self.supply.level() {
                 Level::Good | Level::Slow => Reaction::None,
-                Level::Stop => self.handle(Event::TooLow, state),
-                Level::Rest => self.handle(Event::Empty, state),
+                Level::Stop => self.handle_event(Event::TooLow, state),
+                Level::Rest => self.handle_event(Event::Empty, state),
             });
         }
-        if health.late != self.late {
-            self.late = health.late;
-            reaction = reaction.max(self.handle(Event::LateEdge, state));
+        if health.late_edges != self.handled_late_edges {
+            self.handled_late_edges = health.late_edges;
+            reaction = reaction.max(self.handle_event(Event::LateEdge, state));
         }
         if !health.is_stack_intact && self.fault != Some(Fault::Stack) {
-            reaction = reaction.max(self.handle(Event::Stack, state));
+            reaction = reaction.max(self.handle_event(Event::Stack, state));
         }
         reaction
     }
 
     /// Records the fault that the table assigns to an event, and returns the reaction.
     #[inline(never)]
-    fn handle(&mut self, event: Event, state: State) -> Reaction {
+    fn handle_event(&mut self, event: Event, state: State) -> Reaction {
         match self.response(event, state) {
             Response::Freeze(fault) => {
                 self.record_fault(fault);
@@ -247,12 +247,12 @@ impl Safety {
 
     /// Cancels `boot`: a received byte means that a computer is connected.
     pub fn note_byte(&mut self) {
-        self.boot_timer = BOOT_AFTER;
+        self.boot_timer = FRAMES_TO_BOOT;
     }
 
     /// Notes that a command was received.
     pub fn note_command(&mut self) {
-        self.silence = 0;
+        self.silence_ms = 0;
     }
 
     /// Has a notice printed.
@@ -263,7 +263,7 @@ impl Safety {
     /// The notice to print next, if any.
     pub const fn notice(&self) -> Option<Notice> {
         let mut index = 0;
-        while index < NOTICES {
+        while index < NOTICE_COUNT {
             if self.notices & (1 << index) != 0 {
                 return Some(Notice::at(index));
             }

@@ -126,13 +126,13 @@ pub const fn response(event: Event, supply: Option<Level>, state: State) -> Resp
 
 /// Consecutive resets by a possibly weak supply after which the robot rests: waking
 /// servos would pull the supply down again.
-pub const BROWN_OUTS: u8 = 3;
+pub const BROWN_OUTS_TO_REST: u8 = 3;
 
 /// The servos' state before the reset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ServosBefore {
     /// The state is unknown.
-    Nothing,
+    Unknown,
     /// The servos got no pulses.
     Rested,
     /// The servos were held by pulses.
@@ -146,7 +146,7 @@ pub enum FirstAction {
     /// holds one, otherwise in the neutral pose; then the robot stands.
     Wake,
     /// The servos wake one after the other with their pulses from before the reset; then the robot stands.
-    TakeOver,
+    WakeInPlace,
     /// All servos are held at once, with their pulses from before the reset.
     Hold,
     /// The servos get no pulses.
@@ -155,25 +155,25 @@ pub enum FirstAction {
 
 impl ServosBefore {
     /// All values, as the columns of the table.
-    pub const ALL: [Self; 3] = [Self::Nothing, Self::Rested, Self::Held];
+    pub const ALL: [Self; 3] = [Self::Unknown, Self::Rested, Self::Held];
 }
 
 /// The table of resets: the first action and the fault that is shown, given the cause, the
 /// consecutive resets that a weak supply may have caused, and the servos' state before the reset.
 #[rustfmt::skip]
 pub const fn first_action(cause: Cause, brown_outs: u8, before: ServosBefore) -> (FirstAction, Option<Fault>) {
-    use FirstAction::{Hold, Rest, TakeOver, Wake};
-    let too_many = brown_outs >= BROWN_OUTS;
+    use FirstAction::{Hold, Rest, WakeInPlace, Wake};
+    let too_many = brown_outs >= BROWN_OUTS_TO_REST;
     let ([nothing, rested, held], fault) = match cause {
         // cause                                   nothing  rested  held
         Cause::Power                           => ([Wake,   Wake,   Wake],     None),
         Cause::Watchdog                        => ([Rest,   Rest,   Hold],     Some(Fault::Watchdog)),
         Cause::External | Cause::BrownOut
             if too_many                        => ([Rest,   Rest,   Rest],     Some(Fault::BrownOut)),
-        Cause::External | Cause::BrownOut      => ([Wake,   Rest,   TakeOver], None),
+        Cause::External | Cause::BrownOut      => ([Wake,   Rest,   WakeInPlace], None),
     };
     let beginning = match before {
-        ServosBefore::Nothing => nothing,
+        ServosBefore::Unknown => nothing,
         ServosBefore::Rested => rested,
         ServosBefore::Held => held,
     };

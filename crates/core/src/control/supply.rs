@@ -56,7 +56,7 @@ pub struct Supply {
     /// Consecutive frames that have measured another level.
     frames_at_other_level: u8,
     /// The level nearest to the present one in the frames of `frames_at_other_level`.
-    nearest: Level,
+    nearest_other_level: Level,
     /// Number of readings so far, up to [`FRAMES_TO_WORSE`].
     readings: u8,
 }
@@ -67,9 +67,9 @@ pub struct Supply {
 const FRAMES_TO_WORSE: u8 = 6;
 
 /// Frames for which a better level must last before it counts: a second.
-const TO_BETTER: u8 = 50;
+const FRAMES_TO_BETTER: u8 = 50;
 /// Voltage above a threshold that a better level needs, mV.
-const HYSTERESIS: u16 = 150;
+const HYSTERESIS_MV: u16 = 150;
 
 impl Voltage {
     /// The voltage of the chip's supply.
@@ -143,7 +143,7 @@ impl Supply {
             },
             level: Level::Good,
             frames_at_other_level: 0,
-            nearest: Level::Good,
+            nearest_other_level: Level::Good,
             readings: 0,
         }
     }
@@ -164,7 +164,7 @@ impl Supply {
     }
 
     /// The present level; `None` until enough frames have measured it.
-    pub const fn measured(&self) -> Option<Level> {
+    pub const fn measured_level(&self) -> Option<Level> {
         if self.readings < FRAMES_TO_WORSE {
             None
         } else {
@@ -173,7 +173,7 @@ impl Supply {
     }
 
     /// The voltage of the chip's supply or of the rail, whichever restricts the robot more.
-    pub fn worst(&self, supplies: &Supplies) -> Voltage {
+    pub fn worst_voltage(&self, supplies: &Supplies) -> Voltage {
         let board = Voltage::of_board(self.reading, supplies);
         let rail = Voltage::of_rail(self.reading, supplies);
         let is_worse = supplies.rail.level(rail, 0) > supplies.board.level(board, 0);
@@ -195,23 +195,23 @@ impl Supply {
         let (level, frames) = if worse > self.level {
             (worse, FRAMES_TO_WORSE)
         } else if self.level > Level::Good {
-            (supplies.level(reading, HYSTERESIS), TO_BETTER)
+            (supplies.level(reading, HYSTERESIS_MV), FRAMES_TO_BETTER)
         } else {
             (self.level, 0)
         };
         // A voltage between a threshold and the same threshold raised by the hysteresis changes nothing.
-        if level == self.level || (frames == TO_BETTER && level > self.level) {
+        if level == self.level || (frames == FRAMES_TO_BETTER && level > self.level) {
             self.frames_at_other_level = 0;
             return false;
         }
-        let goes_on =
-            self.frames_at_other_level > 0 && (self.nearest > self.level) == (level > self.level);
-        self.nearest = match goes_on {
+        let is_same_direction = self.frames_at_other_level > 0
+            && (self.nearest_other_level > self.level) == (level > self.level);
+        self.nearest_other_level = match is_same_direction {
             false => level,
-            true if level > self.level => level.min(self.nearest),
-            true => level.max(self.nearest),
+            true if level > self.level => level.min(self.nearest_other_level),
+            true => level.max(self.nearest_other_level),
         };
-        self.frames_at_other_level = if goes_on {
+        self.frames_at_other_level = if is_same_direction {
             self.frames_at_other_level + 1
         } else {
             1
@@ -219,7 +219,7 @@ impl Supply {
         let changed = self.frames_at_other_level >= frames;
         if changed {
             self.frames_at_other_level = 0;
-            self.level = self.nearest;
+            self.level = self.nearest_other_level;
         }
         changed
     }

@@ -11,7 +11,7 @@
 //!
 //! **1. Crank tips.** Base and cranks are rounded to a step, 1/4 U each. Half the base
 //! loses 1/2 U, the rounded sum of the products 1/2 U, and a direction is off by
-//! [`DIRECTION`] in sine and cosine. So `k'` is within `e` of `k`:
+//! [`MAX_DIRECTION_ERROR`] in sine and cosine. So `k'` is within `e` of `k`:
 //!
 //! ```text
 //! e_x = 1/4 + 1/2 + 1/2 + (|cos| + |cos|) / 4 + DIRECTION (c1 + c2)
@@ -51,7 +51,7 @@ use crate::numbers::slider::Slider;
 use crate::numbers::units::Scale;
 
 /// The error of a sine or a cosine; see the test of [`crate::guard::trig`].
-pub const DIRECTION: f64 = 4.5e-5;
+pub const MAX_DIRECTION_ERROR: f64 = 4.5e-5;
 
 /// The step of a margin.
 pub const Q15: f64 = 1.0 / 32768.0;
@@ -71,7 +71,7 @@ const Q10: f64 = 1.0 / 1024.0;
 /// The true margin is then below a tenth: by part 2 of the derivation it is at most the root of `m'^2 + q`, and
 /// with the shortest couplers, of 2048 U, and `e` at most 3.1, `q` is at most `7.3 k / ab`: .0071 for stretched
 /// couplers of equal length, where `m'` is .031, and .0031 for folded ones of a ratio of 8, where it is .077.
-pub const KNOWN: f64 = 0.08;
+pub const MIN_KNOWN_MARGIN: f64 = 0.08;
 
 /// The error of the tables of a pair of couplers.
 ///
@@ -113,7 +113,7 @@ impl LeanError {
             |product: Product, ends: [f64; 2], within: [f64; 2], first: f64| {
                 let ends = [ends[0].max(within[0]), ends[1].min(within[1])];
                 if ends[0] <= ends[1] {
-                    let [bend, top] = product.bend(ends, first);
+                    let [bend, top] = product.max_bend_and_value(ends, first);
                     let value = bend / 2048.0 + top / 65536.0 + Q10;
                     // From rounding R and N down: a relative error, taken as twice its first-order term.
                     let of_ends = [
@@ -169,7 +169,7 @@ struct Product([Factor; 3]);
 impl Product {
     /// The largest `|t^2 f''|` and the largest value, over a range of `t` that is extended by a
     /// step on either side, but not below `first`.
-    fn bend(&self, [low, high]: [f64; 2], first: f64) -> [f64; 2] {
+    fn max_bend_and_value(&self, [low, high]: [f64; 2], first: f64) -> [f64; 2] {
         let ends = [(low * 16.0 / 17.0).max(first), high * 17.0 / 16.0];
         let (mut sum, mut squares, mut top) = ([0.0; 2], [0.0; 2], 1.0f64);
         for Factor { power, p, q } in self.0 {
@@ -202,7 +202,7 @@ impl Product {
 
 /// The rounded numbers of a five-bar, on which its errors depend besides its true bars.
 #[derive(Clone, Copy, Debug)]
-pub struct Bars {
+pub struct RoundedBars {
     /// The scale of the five-bar's lengths.
     pub scale: Scale,
     /// The left and the right coupler in whole steps.
@@ -212,7 +212,7 @@ pub struct Bars {
 /// The largest errors of the margins of a five-bar (head or tail), at one pair of crank angles or over a range of
 /// them.
 #[derive(Clone, Copy, Debug)]
-pub struct End {
+pub struct EndErrors {
     /// The error of the type-2 margin's magnitude, a sine.
     pub type2: f64,
     /// The error of the left crank's type-1 margin, a sine.
@@ -222,15 +222,19 @@ pub struct End {
     /// The error of the crank tips' distance along the base, mm.
     pub along: f64,
     /// The smallest true type-2 margin in the range, a sine; 0 if the loop does not close everywhere in the range.
-    pub least: f64,
+    pub min_type2: f64,
     /// True if the tables have a value at every true type-2 margin of the range.
     pub is_known: bool,
 }
 
-impl End {
+impl EndErrors {
     /// The errors for true bars, the integers made of them, and crank angles in the five-bar's own frame, deg. If
     /// the loop does not close, `type2` is the largest margin that the integers may compute.
-    pub fn of(bars: &kinematics::FiveBar, integers: impl Into<Bars>, angles: [f64; 2]) -> Self {
+    pub fn of(
+        bars: &kinematics::FiveBar,
+        integers: impl Into<RoundedBars>,
+        angles: [f64; 2],
+    ) -> Self {
         let [left, right] = angles.map(Vector::direction);
         let tip = |crank: f64, of: Vector| [crank * of.x, crank * of.y];
         let (l, r) = (tip(bars.crank_left, left), tip(bars.crank_right, right));
@@ -242,7 +246,7 @@ impl End {
     /// The errors for all crank angles at which the distance of the crank tips is from `near` to `far`, mm.
     pub fn between(
         bars: &kinematics::FiveBar,
-        integers: impl Into<Bars>,
+        integers: impl Into<RoundedBars>,
         [near, far]: [f64; 2],
     ) -> Self {
         Self::at(bars, integers.into(), [2.0; 2], [near, far])
@@ -251,19 +255,19 @@ impl End {
     /// The errors for given sums of the directions' `|cos|` and `|sin|`.
     fn at(
         bars: &kinematics::FiveBar,
-        integers: Bars,
+        integers: RoundedBars,
         [cosines, sines]: [f64; 2],
         apart: [f64; 2],
     ) -> Self {
         let to_u = per_mm(integers.scale) / 2.0;
         let cranks = to_u * (bars.crank_left + bars.crank_right) + 0.5;
-        let e_x = 1.25 + cosines / 4.0 + DIRECTION * cranks;
-        let e_y = 0.5 + sines / 4.0 + DIRECTION * cranks;
+        let e_x = 1.25 + cosines / 4.0 + MAX_DIRECTION_ERROR * cranks;
+        let e_y = 0.5 + sines / 4.0 + MAX_DIRECTION_ERROR * cranks;
         let e = e_x.hypot(e_y);
         let [near, far] = apart.map(|mm| to_u * mm);
         let [a, b] = [bars.coupler_left, bars.coupler_right].map(|mm| to_u * mm);
         let z = e * (2.0 * far + e);
-        let around = [(near - e).max(0.0).powi(2), (far + e).powi(2)];
+        let tips_sq_range = [(near - e).max(0.0).powi(2), (far + e).powi(2)];
 
         let cosine = |k: f64| (a * a + b * b - k * k) / (2.0 * a * b);
         let (first, last) = (cosine(near), cosine(far));
@@ -272,8 +276,8 @@ impl End {
         let c_off = (far + 0.25 + z) / least_area;
         let closes = c <= 1.0;
         let sine_sq = |c: f64| (1.0 - c * c).max(0.0);
-        let turns = first > 0.0 && last < 0.0;
-        let top_sq = if turns {
+        let passes_right_angle = first > 0.0 && last < 0.0;
+        let top_sq = if passes_right_angle {
             1.0
         } else {
             sine_sq(first.abs().min(last.abs()))
@@ -291,12 +295,12 @@ impl End {
         let high = root(top_sq + q);
 
         let [left, right] = integers.couplers;
-        let lean = LeanError::of(left, right, around);
+        let lean = LeanError::of(left, right, tips_sq_range);
         let [left, right] = [left, right].map(f64::from);
         let half = (left + right) / 2.0;
         let square = 2f64.powi((half * half).log2().floor() as i32 - 14);
-        let rise = 2.0 * left / 2.0 * right / 2.0 * high / around[0].max(1.0) + lean.rise;
-        let product = (lean.rise * around[1] + rise * square / 2.0) / (left * right / 2.0);
+        let rise = 2.0 * left / 2.0 * right / 2.0 * high / tips_sq_range[0].max(1.0) + lean.rise;
+        let product = (lean.rise * tips_sq_range[1] + rise * square / 2.0) / (left * right / 2.0);
         let area = left * right / square;
         let of_area = (1.0 / (area - 1.0) + Q15) * (high + product);
         let type2 = sine_off + product + 2.0 * Q15 + of_area + Q15;
@@ -305,8 +309,8 @@ impl End {
         let type1 = |coupler: f64| {
             let a = coupler / 2.0;
             let moved = (0.5 + e) / ((a - 0.25) * low.max(1e-9)) + turned;
-            let (near, far) = (around[0].sqrt().max(1.0), far + e);
-            let part = 0.5 + 2f64.sqrt() * DIRECTION * far;
+            let (near, far) = (tips_sq_range[0].sqrt().max(1.0), far + e);
+            let part = 0.5 + 2f64.sqrt() * MAX_DIRECTION_ERROR * far;
             let opened = part * (2f64.sqrt() * 2.0 * a / near + lean.rise + lean.skew)
                 + far * lean.rise.hypot(lean.skew)
                 + 2.0;
@@ -317,8 +321,8 @@ impl End {
             type1_left: type1(left),
             type1_right: type1(right),
             along: e_x / to_u,
-            least: m,
-            is_known: closes && low >= KNOWN,
+            min_type2: m,
+            is_known: closes && low >= MIN_KNOWN_MARGIN,
         }
     }
 
@@ -329,11 +333,11 @@ impl End {
 }
 
 /// The error of a slider's length, mm. In each coordinate the offset or the base and both arms are rounded to a
-/// step, half a step each, the sum of the products too, and the arms' directions are off by [`DIRECTION`].
-pub fn slider(side: &kinematics::Slider, integers: &Slider) -> f64 {
+/// step, half a step each, the sum of the products too, and the arms' directions are off by [`MAX_DIRECTION_ERROR`].
+pub fn slider_error(side: &kinematics::Slider, integers: &Slider) -> f64 {
     let per_mm = per_mm(integers.scale);
     let arms = (side.front * per_mm).round() + (side.rear * per_mm).round();
-    2f64.sqrt() * (0.5 + 0.5 + 0.5 + 0.5 + DIRECTION * arms) / per_mm
+    2f64.sqrt() * (0.5 + 0.5 + 0.5 + 0.5 + MAX_DIRECTION_ERROR * arms) / per_mm
 }
 
 /// Steps of a scale in a millimetre.
@@ -372,9 +376,9 @@ mod tests {
             };
             let (apart, width) = (truth.gap.length(), 10f64.powf(width));
             let range = [(apart - below * width).max(0.0), apart + above * width];
-            let here = End::of(&bars, &robot.ends[0], [a1, a2]);
-            let all = End::between(&bars, &robot.ends[0], range);
-            prop_assert!(all.least <= truth.type2 + 1e-12);
+            let here = EndErrors::of(&bars, &robot.ends[0], [a1, a2]);
+            let all = EndErrors::between(&bars, &robot.ends[0], range);
+            prop_assert!(all.min_type2 <= truth.type2 + 1e-12);
             if !all.is_known {
                 return Ok(());
             }

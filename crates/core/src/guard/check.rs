@@ -21,7 +21,7 @@ use crate::numbers::section::{self, Damage, NUMBERS, Numbers};
 use crate::numbers::units::{CYCLES_PER_US, Sweep};
 
 /// The shortest and the longest pulse of a hobby servo, CPU cycles, with a cycle of tolerance for rounding.
-const PULSES: [u16; 2] = [500 * CYCLES_PER_US - 1, 2500 * CYCLES_PER_US + 1];
+const PULSE_LIMITS: [u16; 2] = [500 * CYCLES_PER_US - 1, 2500 * CYCLES_PER_US + 1];
 
 /// True for a pin other than those of the serial line and the LED: D2 to D12 and A0 to A5.
 const fn is_free(pin: u8) -> bool {
@@ -52,9 +52,9 @@ impl<'a> Robot<'a> {
 
     /// True if pins and pulses suit servos and the neutral pose is safe.
     fn is_harmless(&self) -> bool {
-        self.has_pins() && self.has_servos() && {
+        self.has_valid_pins() && self.has_valid_servos() && {
             let neutral = Pose::NEUTRAL;
-            Clearance::of(self, &neutral).hazard(self).is_none()
+            Clearance::of(self, &neutral).first_hazard(self).is_none()
         }
     }
 
@@ -66,7 +66,7 @@ impl<'a> Robot<'a> {
 
     /// True if each servo has a free pin of the board to itself, and the rail's pin, if any, is an analogue input.
     #[inline(always)]
-    fn has_pins(&self) -> bool {
+    fn has_valid_pins(&self) -> bool {
         let rail = self.read_word(offset!(rail)) as u8;
         let mut servo = offset!(pins);
         while servo < offset!(pins) + 4 {
@@ -104,12 +104,12 @@ impl<'a> Robot<'a> {
     /// True if every servo's travel contains the neutral angle and all sweeps that the gaits need, and has
     /// only pulses that a servo tolerates.
     #[inline(always)]
-    fn has_servos(&self) -> bool {
+    fn has_valid_servos(&self) -> bool {
         let mut servo = 0;
         while servo < 4 {
             let name = Servo::at(servo);
-            let calibration: Calibration = self.servo(name);
-            let [min, most] = PULSES;
+            let calibration: Calibration = self.calibration_of(name);
+            let [min, most] = PULSE_LIMITS;
             let is_in_pulse_range = |pulse: u16| pulse.wrapping_sub(min) <= most - min;
             if !calibration.reaches(Sweep(0))
                 || !is_in_pulse_range(calibration.pulse(calibration.min))

@@ -19,15 +19,15 @@ use crate::numbers::root::root;
 use crate::numbers::units::Sine;
 
 /// The number of margins of a pose.
-const MARGINS: usize = 10;
+const MARGIN_COUNT: usize = 10;
 
 /// The indices of the first type-1 margin and of the first leg margin.
-const TYPE1: usize = 2;
-const LEGS: usize = 6;
+const FIRST_TYPE1: usize = 2;
+const FIRST_LEG: usize = 6;
 
 flash! {
     /// The margins in the order in which they are checked.
-    const ORDER: [Margin; MARGINS] = [
+    const MARGIN_ORDER: [Margin; MARGIN_COUNT] = [
         Margin::Type2(End::Head),
         Margin::Type2(End::Tail),
         Margin::Type1(Servo::A1),
@@ -44,11 +44,11 @@ flash! {
 /// Returns the first limit that a pose breaks; `None` if it breaks none. A pose in certified cells is
 /// not measured: all poses in them were proved safe when the section was made.
 #[inline(never)]
-pub fn hazard(robot: &Robot, pose: &Pose) -> Option<Hazard> {
+pub fn find_hazard(robot: &Robot, pose: &Pose) -> Option<Hazard> {
     if robot.is_certified(pose) {
         return None;
     }
-    Clearance::of(robot, pose).hazard(robot)
+    Clearance::of(robot, pose).first_hazard(robot)
 }
 
 /// Every margin of one pose.
@@ -57,7 +57,7 @@ pub struct Clearance {
     /// The type-2 margins of head and tail, the type-1 margins of A1 to A4, and the leg margins of A1 to A4. A leg
     /// margin is sin theta_lg in the frame of the leg's five-bar; it is negative beyond a change point (0, 180 deg),
     /// where the parallelogram may have flipped to its crossed form.
-    pub margins: [Sine; MARGINS],
+    pub margins: [Sine; MARGIN_COUNT],
     /// The squared lengths of the left and the right slider, each in squared steps of its own scale.
     pub sliders_sq: [u32; 2],
 }
@@ -68,7 +68,7 @@ impl Clearance {
     pub fn of(robot: &Robot, pose: &Pose) -> Self {
         let mut cranks = [Direction { sin: 0, cos: 0 }; 4];
         let mut clearance = Self {
-            margins: [Sine(0); MARGINS],
+            margins: [Sine(0); MARGIN_COUNT],
             sliders_sq: [0; 2],
         };
         #[expect(
@@ -82,7 +82,7 @@ impl Clearance {
                 crank.sin = -crank.sin;
             }
             cranks[index] = crank;
-            clearance.margins[LEGS + index] = Sine(crank.sin);
+            clearance.margins[FIRST_LEG + index] = Sine(crank.sin);
         }
         for end in End::ALL {
             clearance.measure_end(robot, end, &cranks);
@@ -100,12 +100,12 @@ impl Clearance {
         let [left, right] = end.servos();
         let margins = robot.end(end).margins(left.of(cranks), right.of(cranks));
         self.margins[end as usize] = margins.type2;
-        self.margins[TYPE1 + left.index()] = margins.type1_left;
-        self.margins[TYPE1 + right.index()] = margins.type1_right;
+        self.margins[FIRST_TYPE1 + left.index()] = margins.type1_left;
+        self.margins[FIRST_TYPE1 + right.index()] = margins.type1_right;
     }
 
     /// The smallest of the ten margins.
-    pub fn smallest(&self) -> Sine {
+    pub fn smallest_margin(&self) -> Sine {
         let mut smallest = Sine(i16::MAX);
         for margin in &self.margins {
             smallest = smallest.min(*margin);
@@ -116,17 +116,17 @@ impl Clearance {
     /// The first limit that this pose breaks: margins first, then the strokes left and right. `None` if it breaks
     /// none.
     #[inline(never)]
-    pub fn hazard(&self, robot: &Robot) -> Option<Hazard> {
+    pub fn first_hazard(&self, robot: &Robot) -> Option<Hazard> {
         let limits = robot.limits();
         for (index, value) in self.margins.iter().enumerate() {
             let limit = match index {
-                ..TYPE1 => limits.type2,
-                TYPE1..LEGS => limits.type1,
+                ..FIRST_TYPE1 => limits.type2,
+                FIRST_TYPE1..FIRST_LEG => limits.type1,
                 _ => limits.leg,
             };
             if *value < limit {
                 return Some(Hazard::Margin {
-                    margin: ORDER.at(index).load(),
+                    margin: MARGIN_ORDER.at(index).load(),
                     value: *value,
                 });
             }

@@ -70,7 +70,7 @@ impl<'a> FiveBar<'a> {
         let bars = &self.bars;
         // Half the step of the bars, so that the distance of the crank tips fits and the shift is by whole
         // bytes.
-        let tips = Tips {
+        let tips = TipVector {
             along: (bars.base >> 1)
                 .wrapping_add(upper(mul(bars.right, right.cos) - mul(bars.left, left.cos))),
             across: upper(mul(bars.right, right.sin) - mul(bars.left, left.sin)),
@@ -88,8 +88,8 @@ impl<'a> FiveBar<'a> {
         let size = saturate((mul_unsigned(area, bars.per_area) >> 15) as i32);
         EndMargins {
             type2: Sine(if tips.along > 0 { size } else { -size }),
-            type1_left: tips.elbow(left, rise.wrapping_neg(), skew, bars.per_left),
-            type1_right: tips.elbow(right, rise, skew.wrapping_neg(), bars.per_right),
+            type1_left: tips.type1_margin(left, rise.wrapping_neg(), skew, bars.per_left),
+            type1_right: tips.type1_margin(right, rise, skew.wrapping_neg(), bars.per_right),
         }
     }
 }
@@ -103,16 +103,16 @@ impl<'a> Robot<'a> {
 
 /// The vector from the left crank tip to the right one, in half steps.
 #[derive(Clone, Copy)]
-struct Tips {
+struct TipVector {
     along: i16,
     across: i16,
 }
 
-impl Tips {
+impl TipVector {
     /// The type-1 margin of a crank: `(1 + skew) cross + rise dot` over twice the length of
     /// its coupler.
     #[inline(never)]
-    fn elbow(self, crank: &Direction, rise: i16, skew: i16, per_coupler: i16) -> Sine {
+    fn type1_margin(self, crank: &Direction, rise: i16, skew: i16, per_coupler: i16) -> Sine {
         let cross = upper((mul(self.along, crank.sin) - mul(self.across, crank.cos)) << 1);
         let dot = upper((mul(self.along, crank.cos) + mul(self.across, crank.sin)) << 1);
         // The sum is at most twice the coupler; an overflow of its parts beyond 16 bits cancels.

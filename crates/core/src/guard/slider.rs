@@ -89,7 +89,7 @@ mod tests {
             prop_assert_eq!(of.sign() * 90.0, turn);
             let pose = side.forward(-degrees(rear) - turn, degrees(front) + turn).expect("a length");
             let mm = f64::from(length).sqrt() / per_mm(integers.scale);
-            let max = bounds::slider(&side, &integers);
+            let max = bounds::slider_error(&side, &integers);
             prop_assert!((mm - pose.d).abs() <= max, "{mm} for {} mm", pose.d);
         }
 

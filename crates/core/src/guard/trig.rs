@@ -22,8 +22,8 @@ impl Direction {
     pub fn of(angle: Angle) -> Self {
         let angle = angle.0;
         let across = angle & 0x3fff;
-        let rising = quarter(across);
-        let falling = quarter(0x4000 - across);
+        let rising = quarter_sine(across);
+        let falling = quarter_sine(0x4000 - across);
         let (sin, cos) = match angle >> 14 {
             0 => (rising, falling),
             1 => (falling, -rising),
@@ -56,7 +56,7 @@ impl Direction {
 const STEPS: usize = 128;
 
 /// The sine of an angle in the first quarter turn, 0..=0x4000.
-fn quarter(across: u16) -> i16 {
+fn quarter_sine(across: u16) -> i16 {
     let index = usize::from(across >> 7);
     let entry = QUARTER.at(index).load();
     let next_entry = QUARTER.at(index + 1).load();

@@ -50,8 +50,8 @@ impl Adjustment {
         let neutral = servo.pulse(self.trim);
         servo.neutral = Width(neutral);
         if pulses[0] <= neutral && neutral <= pulses[1] {
-            servo.min = farthest(&servo, self.min, pulses);
-            servo.max = farthest(&servo, self.max, pulses);
+            servo.min = limit_to_pulses(&servo, self.min, pulses);
+            servo.max = limit_to_pulses(&servo, self.max, pulses);
         }
         servo
     }
@@ -89,7 +89,7 @@ impl Adjustment {
 /// Limits a sweep to the pulses between the shortest and the longest: returns the sweep itself, or the last one on
 /// the path to it from neutral whose pulse is allowed. The neutral pulse must be allowed.
 #[inline(never)]
-fn farthest(servo: &Calibration, end: Sweep, [shortest, longest]: [u16; 2]) -> Sweep {
+fn limit_to_pulses(servo: &Calibration, end: Sweep, [shortest, longest]: [u16; 2]) -> Sweep {
     let neutral = servo.neutral.0;
     // A pulse is the neutral one plus n times the gain, rounded to a cycle. As long as n times the gain is at
     // most this number, the pulse is within both limits.

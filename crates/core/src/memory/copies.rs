@@ -9,16 +9,16 @@
 //! | 64 | settings, second copy |
 //! | 128 | pose of the last `rest`: settings whose trims are the pose's sweeps |
 
-use crate::memory::record::{Address, CONTENT, Memory, RecordState, Writing};
-use crate::memory::settings::{Settings, TURN};
+use crate::memory::record::{Address, CONTENT_BYTES, Memory, RecordState, Writing};
+use crate::memory::settings::{SAVE_NUMBER, Settings};
 use crate::numbers::pose::Pose;
 use crate::numbers::robot::Robot;
 
 /// The addresses of the two copies of the settings.
-pub const COPIES: [Address; 2] = [copy(0), copy(1)];
+pub const COPIES: [Address; 2] = [copy_address(0), copy_address(1)];
 
 /// The address of the first copy for an even number, of the second for an odd one.
-const fn copy(number: usize) -> Address {
+const fn copy_address(number: usize) -> Address {
     Address((number as u16 & 1) * 64)
 }
 
@@ -27,7 +27,7 @@ pub const REST_POSE: Address = Address(128);
 
 /// The state of the saved settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
+pub enum SavedState {
     /// The settings saved last are valid.
     Latest,
     /// No settings were ever saved.
@@ -53,11 +53,11 @@ struct Copies {
 impl Copies {
     #[inline(never)]
     fn check<M: Memory>(memory: &M) -> Self {
-        let states = [copy(0).check(memory), copy(1).check(memory)];
-        let turn = |copy: usize| self::copy(copy).byte(memory, TURN as u16);
+        let states = [copy_address(0).check(memory), copy_address(1).check(memory)];
+        let save_number = |copy: usize| self::copy_address(copy).byte(memory, SAVE_NUMBER as u16);
         let latest = match states {
             [RecordState::Valid, RecordState::Valid] => {
-                usize::from(turn(1).wrapping_sub(turn(0)) < 0x80)
+                usize::from(save_number(1).wrapping_sub(save_number(0)) < 0x80)
             }
             [RecordState::Valid, _] => 0,
             _ => 1,
@@ -70,40 +70,40 @@ impl Copies {
     }
 
     fn address(&self) -> Address {
-        copy(self.latest)
+        copy_address(self.latest)
     }
 }
 
 /// Reads the settings saved last into `settings`, and returns their state. Without a valid copy, `settings` stay
 /// as they are.
 #[inline(never)]
-pub fn read<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> Outcome {
+pub fn read<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> SavedState {
     let copies = Copies::check(memory);
     if copies.has_no_valid_copy() {
         return match copies.states {
-            [RecordState::Blank, RecordState::Blank] => Outcome::Blank,
-            _ => Outcome::Damaged,
+            [RecordState::Blank, RecordState::Blank] => SavedState::Blank,
+            _ => SavedState::Damaged,
         };
     }
     copies.address().fetch(memory, settings.bytes_mut());
-    if !settings.belong_to(robot) {
-        Outcome::Foreign
+    if !settings.is_for(robot) {
+        SavedState::Foreign
     } else if copies.states.contains(&RecordState::Damaged) {
-        Outcome::OneCopy
+        SavedState::OneCopy
     } else {
-        Outcome::Latest
+        SavedState::Latest
     }
 }
 
 /// Loads the settings to use: those saved last if all gaits work with them, else robot.toml's.
 #[inline(never)]
-pub fn load<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> Outcome {
+pub fn load<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> SavedState {
     let mut outcome = read(robot, memory, settings);
-    if matches!(outcome, Outcome::Latest | Outcome::OneCopy) {
+    if matches!(outcome, SavedState::Latest | SavedState::OneCopy) {
         if settings.first_unfit_servo(robot).is_none() {
             return outcome;
         }
-        outcome = Outcome::Unfit;
+        outcome = SavedState::Unfit;
     }
     *settings = Settings::of(robot);
     outcome
@@ -114,27 +114,27 @@ pub fn load<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> Ou
 pub fn save<M: Memory>(settings: &mut Settings, memory: &M) -> Option<Writing> {
     let copies = Copies::check(memory);
     if copies.has_no_valid_copy() {
-        settings.set_turn(1);
-        return Some(copy(0).write());
+        settings.set_save_number(1);
+        return Some(copy_address(0).start_write());
     }
     let latest = copies.address();
-    let turn = latest.byte(memory, TURN as u16);
-    settings.set_turn(turn);
+    let save_number = latest.byte(memory, SAVE_NUMBER as u16);
+    settings.set_save_number(save_number);
     let is_saved = |(n, byte): (usize, &u8)| latest.byte(memory, n as u16) == *byte;
     if settings.bytes().iter().enumerate().all(is_saved) {
         return None;
     }
-    settings.set_turn(turn.wrapping_add(1));
-    Some(copy(copies.latest ^ 1).write())
+    settings.set_save_number(save_number.wrapping_add(1));
+    Some(copy_address(copies.latest ^ 1).start_write())
 }
 
 /// The pose of the last rest. `None` if the robot has moved since, or if the record is damaged or belongs to other
 /// servos.
 pub fn last_rest_pose<M: Memory>(robot: &Robot, memory: &M) -> Option<Pose> {
-    let mut bytes = [0; CONTENT];
+    let mut bytes = [0; CONTENT_BYTES];
     REST_POSE.fetch(memory, &mut bytes);
     let saved = Settings::from_bytes(bytes);
-    (REST_POSE.check(memory) == RecordState::Valid && saved.belong_to(robot)).then(|| saved.pose())
+    (REST_POSE.check(memory) == RecordState::Valid && saved.is_for(robot)).then(|| saved.pose())
 }
 
 #[cfg(test)]

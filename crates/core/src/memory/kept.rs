@@ -24,7 +24,7 @@ use crate::memory::restart::{Cause, Restart, Stance};
 use crate::numbers::rate::Rate;
 
 /// The number of cells.
-pub const CELLS: usize = COPIES + 2 * COPY_CELLS;
+pub const CELLS: usize = FIRST_COPY_CELL + 2 * COPY_CELLS;
 
 /// Bytes that survive a reset. At power-on each may hold anything.
 pub trait Cells {
@@ -35,36 +35,36 @@ pub trait Cells {
     fn set(&self, index: usize, byte: u8);
 }
 
-const MARK: usize = 0;
-const STATE: usize = 1;
-const COUNT: usize = 2;
-const VALID_COPY: usize = 3;
-const RATE: usize = 4;
-const COPIES: usize = 5;
+const MARK_CELL: usize = 0;
+const STATE_CELL: usize = 1;
+const COUNT_CELL: usize = 2;
+const VALID_COPY_CELL: usize = 3;
+const RATE_CELL: usize = 4;
+const FIRST_COPY_CELL: usize = 5;
 
 /// Number of cells in a copy.
 const COPY_CELLS: usize = 19;
 
 /// The value of the mark's cell as long as there is power.
-const ALIVE: u8 = 0x96;
+const POWERED_MARK: u8 = 0x96;
 
-/// The values of [`STATE`] for a program that runs, and for one that hung.
+/// The values of [`STATE_CELL`] for a program that runs, and for one that hung.
 const RUNNING: u8 = 0x5c;
 const HUNG: u8 = 0xa3;
 
 /// The flag in a copy's first byte for no pulses; the other bits are the frames since pulses began.
-const RESTING: u8 = 0x80;
+const RESTING_FLAG: u8 = 0x80;
 
 /// The first byte of a copy that holds no stance.
-const NOTHING: u8 = 0x7f;
+const EMPTY_STATE: u8 = 0x7f;
 
 /// Returns the cause of the reset and the state from before it, and marks the program as
 /// running. `reported` is the cause that the chip reports, or `None` if a boot loader has
 /// cleared it. To be called once, before the watchdog starts.
 #[inline(never)]
 pub fn begin<C: Cells>(cells: &C, reported: Option<Cause>) -> Restart {
-    let (state, count) = (cells.get(STATE), cells.get(COUNT));
-    let survived = cells.get(MARK) == ALIVE && matches!(state, RUNNING | HUNG);
+    let (state, count) = (cells.get(STATE_CELL), cells.get(COUNT_CELL));
+    let survived = cells.get(MARK_CELL) == POWERED_MARK && matches!(state, RUNNING | HUNG);
     let cause = match reported {
         Some(cause) => cause,
         None if !survived => Cause::Power,
@@ -78,24 +78,24 @@ pub fn begin<C: Cells>(cells: &C, reported: Option<Cause>) -> Restart {
         may_be_supply: cause == Cause::BrownOut || cause == Cause::External && is_hidden,
         brown_outs: 0,
         rate: Rate::Fastest,
-        before: None,
+        stance_before: None,
     };
     if survived && cause != Cause::Power {
         restart.count = count.saturating_add(1);
         if cause != Cause::External {
-            restart.rate = Rate::from_number(cells.get(RATE));
+            restart.rate = Rate::from_number(cells.get(RATE_CELL));
         }
-        take(cells, &mut restart);
+        read_stance(cells, &mut restart);
     } else {
         // By chance RAM may hold a copy that looks valid: the next reset must not find
         // it.
-        cells.set(COPIES, NOTHING);
-        cells.set(COPIES + COPY_CELLS, NOTHING);
+        cells.set(FIRST_COPY_CELL, EMPTY_STATE);
+        cells.set(FIRST_COPY_CELL + COPY_CELLS, EMPTY_STATE);
     }
     store_rate(cells, restart.rate);
-    cells.set(COUNT, restart.count);
-    cells.set(STATE, RUNNING);
-    cells.set(MARK, ALIVE);
+    cells.set(COUNT_CELL, restart.count);
+    cells.set(STATE_CELL, RUNNING);
+    cells.set(MARK_CELL, POWERED_MARK);
     restart
 }
 
@@ -103,56 +103,56 @@ pub fn begin<C: Cells>(cells: &C, reported: Option<Cause>) -> Restart {
 /// The older copy stays valid until the new one is complete.
 #[inline(never)]
 pub fn store_stance<C: Cells>(cells: &C, stance: &Stance, brown_outs: u8) {
-    let turn = !cells.get(VALID_COPY) & 1;
-    let mut copy = Copy::new(cells, turn);
-    copy.put(stance.frames_awake | if stance.is_resting { RESTING } else { 0 });
-    copy.put(brown_outs);
+    let turn = !cells.get(VALID_COPY_CELL) & 1;
+    let mut copy = CopyCursor::new(cells, turn);
+    copy.write_byte(stance.frames_awake | if stance.is_resting { RESTING_FLAG } else { 0 });
+    copy.write_byte(brown_outs);
     for sweep in &stance.pose.0 {
-        copy.put_word(sweep.0 as u16);
+        copy.write_word(sweep.0 as u16);
     }
     for width in &stance.sent.0 {
-        copy.put_word(width.0);
+        copy.write_word(width.0);
     }
-    copy.put(!copy.sum);
-    cells.set(VALID_COPY, turn);
+    copy.write_byte(!copy.sum);
+    cells.set(VALID_COPY_CELL, turn);
 }
 
 /// Stores the rate of the serial line.
 pub fn store_rate<C: Cells>(cells: &C, rate: Rate) {
-    cells.set(RATE, rate as u8);
+    cells.set(RATE_CELL, rate as u8);
 }
 
 /// Marks the program as hung; called by the watchdog's interrupt.
 pub fn mark_hung<C: Cells>(cells: &C) {
-    cells.set(STATE, HUNG);
+    cells.set(STATE_CELL, HUNG);
 }
 
 /// Reads the valid copy, if there is one, into `restart`.
 #[inline(never)]
-fn take<C: Cells>(cells: &C, restart: &mut Restart) {
-    let mut copy = Copy::new(cells, cells.get(VALID_COPY) & 1);
-    let state = copy.take();
-    let brown_outs = copy.take();
+fn read_stance<C: Cells>(cells: &C, restart: &mut Restart) {
+    let mut copy = CopyCursor::new(cells, cells.get(VALID_COPY_CELL) & 1);
+    let state = copy.read_byte();
+    let brown_outs = copy.read_byte();
     let mut stance = Stance {
-        is_resting: state & RESTING != 0,
-        frames_awake: state & !RESTING,
+        is_resting: state & RESTING_FLAG != 0,
+        frames_awake: state & !RESTING_FLAG,
         ..Stance::RESTING
     };
     for sweep in &mut stance.pose.0 {
-        sweep.0 = copy.take_word() as i16;
+        sweep.0 = copy.read_word() as i16;
     }
     for width in &mut stance.sent.0 {
-        width.0 = copy.take_word();
+        width.0 = copy.read_word();
     }
     let check = !copy.sum;
-    if copy.take() == check && state != NOTHING {
+    if copy.read_byte() == check && state != EMPTY_STATE {
         restart.brown_outs = brown_outs;
-        restart.before = Some(stance);
+        restart.stance_before = Some(stance);
     }
 }
 
 /// A copy that is being written or read, cell by cell.
-struct Copy<'a, C> {
+struct CopyCursor<'a, C> {
     cells: &'a C,
     /// The next cell.
     cell: usize,
@@ -160,12 +160,12 @@ struct Copy<'a, C> {
     sum: u8,
 }
 
-impl<'a, C: Cells> Copy<'a, C> {
+impl<'a, C: Cells> CopyCursor<'a, C> {
     const fn new(cells: &'a C, turn: u8) -> Self {
         let cell = if turn == 0 {
-            COPIES
+            FIRST_COPY_CELL
         } else {
-            COPIES + COPY_CELLS
+            FIRST_COPY_CELL + COPY_CELLS
         };
         Self {
             cells,
@@ -174,27 +174,27 @@ impl<'a, C: Cells> Copy<'a, C> {
         }
     }
 
-    fn put(&mut self, byte: u8) {
+    fn write_byte(&mut self, byte: u8) {
         self.cells.set(self.cell, byte);
         self.add_to_sum(byte);
     }
 
-    fn put_word(&mut self, word: u16) {
+    fn write_word(&mut self, word: u16) {
         let [low, high] = word.to_le_bytes();
-        self.put(low);
-        self.put(high);
+        self.write_byte(low);
+        self.write_byte(high);
     }
 
-    fn take(&mut self) -> u8 {
+    fn read_byte(&mut self) -> u8 {
         let byte = self.cells.get(self.cell);
         self.add_to_sum(byte);
         byte
     }
 
     #[inline(never)]
-    fn take_word(&mut self) -> u16 {
-        let low = self.take();
-        u16::from_le_bytes([low, self.take()])
+    fn read_word(&mut self) -> u16 {
+        let low = self.read_byte();
+        u16::from_le_bytes([low, self.read_byte()])
     }
 
     fn add_to_sum(&mut self, byte: u8) {

@@ -23,16 +23,16 @@ pub trait Memory {
 pub const SIZE: usize = 1024;
 
 /// The number of bytes in a record's content.
-pub const CONTENT: usize = 42;
+pub const CONTENT_BYTES: usize = 42;
 
 // The parity of the step selects the byte of the CRC.
-const _: () = assert!(CONTENT.is_multiple_of(2));
+const _: () = assert!(CONTENT_BYTES.is_multiple_of(2));
 
 /// The content of a record.
-pub type Content = [u8; CONTENT];
+pub type Content = [u8; CONTENT_BYTES];
 
 /// The number of bytes in a record: the mark, the content, the CRC.
-pub const LENGTH: u16 = CONTENT as u16 + 3;
+pub const RECORD_BYTES: u16 = CONTENT_BYTES as u16 + 3;
 
 /// The first byte of a valid record.
 pub const VALID_MARK: u8 = 0xa5;
@@ -70,7 +70,7 @@ pub enum Progress {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 // Starts at 1, since `None` has to be zero: see `Main::new`.
 #[repr(u8)]
-enum Byte {
+enum ByteState {
     /// To be written, unless the memory holds this value already.
     ToWrite = 1,
     /// Written, to be read back.
@@ -85,17 +85,17 @@ pub struct Writing {
     /// the mark again.
     step: u8,
     /// The last step.
-    last: u8,
-    byte: Byte,
+    last_step: u8,
+    byte: ByteState,
 }
 
 impl Address {
     /// Checks the record's mark and CRC.
     #[inline(never)]
     pub fn check<M: Memory>(self, memory: &M) -> RecordState {
-        let mut content = [0; CONTENT];
+        let mut content = [0; CONTENT_BYTES];
         self.fetch(memory, &mut content);
-        let crc = [1, 2].map(|n| memory.read(self.0 + CONTENT as u16 + n));
+        let crc = [1, 2].map(|n| memory.read(self.0 + CONTENT_BYTES as u16 + n));
         let mark = memory.read(self.0);
         if mark == VALID_MARK && crc == Checksum::of(&content).0.to_le_bytes() {
             RecordState::Valid
@@ -122,20 +122,20 @@ impl Address {
     }
 
     /// Begins to write a record.
-    pub const fn write(self) -> Writing {
+    pub const fn start_write(self) -> Writing {
         Writing {
             address: self,
             step: 0,
-            last: LENGTH as u8,
-            byte: Byte::ToWrite,
+            last_step: RECORD_BYTES as u8,
+            byte: ByteState::ToWrite,
         }
     }
 
     /// Begins to invalidate a record.
-    pub const fn invalidate(self) -> Writing {
+    pub const fn start_invalidation(self) -> Writing {
         Writing {
-            last: 0,
-            ..self.write()
+            last_step: 0,
+            ..self.start_write()
         }
     }
 }
@@ -151,7 +151,7 @@ impl Writing {
         let step = u16::from(self.step);
         let (offset, byte) = if step == 0 {
             (0, ERASED)
-        } else if step == LENGTH {
+        } else if step == RECORD_BYTES {
             (0, VALID_MARK)
         } else {
             let crc = || Checksum::of(content).0.to_le_bytes()[usize::from(self.step & 1 ^ 1)];
@@ -160,16 +160,16 @@ impl Writing {
         };
         let address = self.address.0 + offset;
         if memory.read(address) != byte {
-            if self.byte == Byte::Written {
+            if self.byte == ByteState::Written {
                 return Progress::Failed;
             }
-            self.byte = Byte::Written;
+            self.byte = ByteState::Written;
             memory.write(address, byte);
-        } else if self.step == self.last {
+        } else if self.step == self.last_step {
             return Progress::Done;
         } else {
             self.step += 1;
-            self.byte = Byte::ToWrite;
+            self.byte = ByteState::ToWrite;
         }
         Progress::InProgress
     }
@@ -200,7 +200,7 @@ mod tests {
 
     /// Writes a record to its end.
     fn write(eeprom: &mut Eeprom, content: &Content) -> Progress {
-        let mut writing = ADDRESS.write();
+        let mut writing = ADDRESS.start_write();
         for _ in 0..10_000 {
             match writing.step(content, eeprom) {
                 Progress::InProgress => {}
@@ -211,7 +211,7 @@ mod tests {
     }
 
     fn read(eeprom: &Eeprom) -> (RecordState, Content) {
-        let mut content = [0; CONTENT];
+        let mut content = [0; CONTENT_BYTES];
         ADDRESS.fetch(eeprom, &mut content);
         (ADDRESS.check(eeprom), content)
     }
@@ -234,7 +234,7 @@ mod tests {
                 let eeprom = Eeprom::with(*eeprom.bytes());
                 prop_assert_eq!(read(&eeprom), (RecordState::Valid, content));
             }
-            let beside = |address: &usize| !(64..64 + usize::from(LENGTH)).contains(address);
+            let beside = |address: &usize| !(64..64 + usize::from(RECORD_BYTES)).contains(address);
             prop_assert!((0..1024).filter(beside).all(|address| eeprom.bytes()[address] == ERASED));
         }
 
@@ -257,7 +257,7 @@ mod tests {
     #[test]
     fn rewriting_touches_only_the_mark_and_bytes_that_differ() {
         let mut eeprom = Eeprom::blank();
-        let mut content = [7; CONTENT];
+        let mut content = [7; CONTENT_BYTES];
         write(&mut eeprom, &content);
         eeprom.log.clear();
         write(&mut eeprom, &content);
@@ -282,16 +282,16 @@ mod tests {
     fn a_memory_that_keeps_nothing_is_detected() {
         let mut eeprom = Eeprom::blank();
         eeprom.is_worn = true;
-        assert_eq!(write(&mut eeprom, &[1; CONTENT]), Progress::Failed);
+        assert_eq!(write(&mut eeprom, &[1; CONTENT_BYTES]), Progress::Failed);
     }
 
     #[test]
     fn a_removed_record_is_not_read_and_its_bytes_stay() {
         let mut eeprom = Eeprom::blank();
-        write(&mut eeprom, &[3; CONTENT]);
+        write(&mut eeprom, &[3; CONTENT_BYTES]);
         let before = *eeprom.bytes();
-        let mut writing = ADDRESS.invalidate();
-        while writing.step(&[0; CONTENT], &mut eeprom) == Progress::InProgress {}
+        let mut writing = ADDRESS.start_invalidation();
+        while writing.step(&[0; CONTENT_BYTES], &mut eeprom) == Progress::InProgress {}
         assert_eq!(read(&eeprom).0, RecordState::Damaged);
         assert_eq!(eeprom.bytes()[64], ERASED);
         assert_eq!(eeprom.bytes()[65..], before[65..]);

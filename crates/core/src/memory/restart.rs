@@ -59,7 +59,7 @@ pub struct Restart {
     pub rate: Rate,
     /// The servos' state before the reset; `None` if it is unknown, and always after
     /// [`Cause::Power`].
-    pub before: Option<Stance>,
+    pub stance_before: Option<Stance>,
 }
 
 impl Stance {
@@ -80,6 +80,6 @@ impl Restart {
         may_be_supply: false,
         brown_outs: 0,
         rate: Rate::Fastest,
-        before: None,
+        stance_before: None,
     };
 }

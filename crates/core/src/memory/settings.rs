@@ -14,7 +14,7 @@
 //! | 40 | `deadman`, ms |
 
 use crate::memory::adjustment::Adjustment;
-use crate::memory::record::{CONTENT, Content};
+use crate::memory::record::{CONTENT_BYTES, Content};
 use crate::numbers::calibration::Calibration;
 use crate::numbers::gaits::GaitId;
 use crate::numbers::part::Servo;
@@ -26,7 +26,7 @@ use crate::numbers::units::Sweep;
 pub const FORMAT: u8 = 1;
 
 /// The offset of the save number.
-pub const TURN: usize = 1;
+pub const SAVE_NUMBER: usize = 1;
 const HASH: usize = 2;
 const SERVOS: usize = 6;
 const BOOT: usize = 38;
@@ -50,23 +50,23 @@ pub struct Settings {
 impl Settings {
     /// Settings of no robot.
     pub const NONE: Self = Self {
-        bytes: [0; CONTENT],
+        bytes: [0; CONTENT_BYTES],
     };
 
     /// The settings of robot.toml.
     #[inline(never)]
     pub fn of(robot: &Robot) -> Self {
         let mut settings = Self::NONE;
-        settings.set_head(robot);
+        settings.set_header(robot);
         for servo in Servo::all() {
-            settings.set_servo(servo, Adjustment::of(&robot.servo(servo)));
+            settings.set_servo(servo, Adjustment::of(&robot.calibration_of(servo)));
         }
         settings.set_boot(Boot::Gait(GaitId::STAND), robot);
         settings
     }
 
     /// Sets format and servo hash to those of a robot.
-    fn set_head(&mut self, robot: &Robot) {
+    fn set_header(&mut self, robot: &Robot) {
         self.bytes[0] = FORMAT;
         let hash = robot.servo_hash();
         self.put(HASH, hash as u16);
@@ -77,7 +77,7 @@ impl Settings {
     #[inline(never)]
     pub fn of_pose(pose: &Pose, robot: &Robot) -> Self {
         let mut saved = Self::NONE;
-        saved.set_head(robot);
+        saved.set_header(robot);
         let mut offset = SERVOS;
         for sweep in &pose.0 {
             saved.put(offset, sweep.0 as u16);
@@ -114,7 +114,7 @@ impl Settings {
     }
 
     /// True if the settings have the format [`FORMAT`] and belong to the servos of this robot.
-    pub fn belong_to(&self, robot: &Robot) -> bool {
+    pub fn is_for(&self, robot: &Robot) -> bool {
         let hash = robot.servo_hash();
         self.bytes[0] == FORMAT
             && self.get(HASH) == hash as u16
@@ -123,12 +123,12 @@ impl Settings {
 
     /// The number of this save, modulo 256.
     pub const fn save_number(&self) -> u8 {
-        self.bytes[TURN]
+        self.bytes[SAVE_NUMBER]
     }
 
     /// Sets the number of this save.
-    pub const fn set_turn(&mut self, turn: u8) {
-        self.bytes[TURN] = turn;
+    pub const fn set_save_number(&mut self, turn: u8) {
+        self.bytes[SAVE_NUMBER] = turn;
     }
 
     /// The adjustment of a servo.
@@ -189,7 +189,7 @@ impl Settings {
     /// The calibration of a servo, with its adjustment applied.
     #[inline(never)]
     pub fn calibration(&self, servo: Servo, robot: &Robot) -> Calibration {
-        self.servo(servo).apply(&robot.servo(servo))
+        self.servo(servo).apply(&robot.calibration_of(servo))
     }
 
     /// The first servo whose travel does not include the neutral angle and all sweeps of the gaits; `None` if every

@@ -93,7 +93,7 @@ impl Motion {
         motion.speed = FULL_PERCENT;
         motion.begin();
         for servo in Servo::all() {
-            motion.calibrate(servo, motion.robot.servo(servo));
+            motion.calibrate(servo, motion.robot.calibration_of(servo));
         }
         motion
     }
@@ -324,7 +324,7 @@ impl Motion {
     fn hazard_of(&self, pose: &Pose) -> Option<Hazard> {
         match pose.first_beyond_travel(&self.calibration) {
             Some(servo) => Some(Hazard::Travel(servo)),
-            None => clearance::hazard(&self.robot, pose),
+            None => clearance::find_hazard(&self.robot, pose),
         }
     }
 
@@ -355,7 +355,7 @@ impl Motion {
         let pose = match &mut self.state {
             State::Resting | State::Holding { .. } => return,
             State::Moving { path, pace, .. } => {
-                *pace = pace::step_toward(*pace, if is_braking { 0 } else { pace::FULL });
+                *pace = pace::step_toward(*pace, if is_braking { 0 } else { pace::FULL_PACE });
                 path.advance(*pace);
                 path.pose()
             }
@@ -387,7 +387,7 @@ impl Motion {
         }
         self.stance.pose = pose;
         if let State::Moving { path, gait, .. } = &self.state
-            && path.arrived()
+            && path.has_arrived()
         {
             self.state = match gait {
                 None => State::Holding { is_ordered: true },
@@ -426,7 +426,7 @@ impl Motion {
         };
         self.state = State::Moving {
             path: PointToPoint::new(&self.stance.pose, &to, self.robot.slew()),
-            pace: pace::FULL,
+            pace: pace::FULL_PACE,
             gait,
         };
         self.hazard = None;

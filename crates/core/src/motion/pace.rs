@@ -6,13 +6,13 @@
 use lizard_avr::mul_unsigned;
 
 /// Full pace, the largest value of a pace.
-pub const FULL: u16 = 1024;
+pub const FULL_PACE: u16 = 1024;
 
 /// The change of the pace per frame. A motion gains or loses its full pace in seven frames, 0.14 s. With an odd
 /// number of steps, a gait meanwhile covers the distance of a whole number of frames at full pace. Frames at full
 /// pace then fall exactly on the corners between the gait's moves. If they were half a frame off, two legs would move
 /// at once at each corner, and `crawl` would lose 1.2 % of its distance.
-const PACE_STEP: u16 = FULL.div_ceil(7);
+const PACE_STEP: u16 = FULL_PACE.div_ceil(7);
 
 /// The pace one frame later, as it approaches `target`.
 pub fn step_toward(pace: u16, target: u16) -> u16 {
@@ -33,13 +33,13 @@ mod tests {
 
     #[test]
     fn gathering_and_losing_pace_take_whole_frames_of_a_gait() {
-        for (from, to) in [(0, FULL), (FULL, 0)] {
+        for (from, to) in [(0, FULL_PACE), (FULL_PACE, 0)] {
             let (mut pace, mut sum) = (from, 0);
             while pace != to {
                 pace = step_toward(pace, to);
                 sum += pace;
             }
-            let frames = f64::from(sum) / f64::from(FULL);
+            let frames = f64::from(sum) / f64::from(FULL_PACE);
             assert!((frames - frames.round()).abs() < 0.02, "{frames}");
         }
     }

@@ -14,7 +14,7 @@ use crate::numbers::slew::Slew;
 const MIN_FRAMES: u16 = 8;
 
 /// The full duration of a move, 1.0 in Q15.
-const END: u16 = 1 << 15;
+const FULL_DURATION: u16 = 1 << 15;
 
 /// A move in progress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,7 +35,7 @@ impl PointToPoint {
         Self {
             from: *from,
             to: *to,
-            step: END / frames.max(MIN_FRAMES),
+            step: FULL_DURATION / frames.max(MIN_FRAMES),
             elapsed: 0,
         }
     }
@@ -48,17 +48,17 @@ impl PointToPoint {
     /// Advances the move by a frame, at `pace` (1024 is full).
     pub fn advance(&mut self, pace: u16) {
         let step = (mul_unsigned(self.step, pace) >> 10) as u16;
-        self.elapsed = (self.elapsed + step).min(END);
+        self.elapsed = (self.elapsed + step).min(FULL_DURATION);
     }
 
     /// True once the move has arrived.
-    pub const fn arrived(&self) -> bool {
-        self.elapsed == END
+    pub const fn has_arrived(&self) -> bool {
+        self.elapsed == FULL_DURATION
     }
 
     /// The pose at the present time of the move.
     pub fn pose(&self) -> Pose {
-        if self.arrived() {
+        if self.has_arrived() {
             return self.to;
         }
         let share = smoothstep(self.elapsed) as i16;
@@ -76,7 +76,7 @@ impl PointToPoint {
 /// `3 u^2 - 2 u^3`, Q15; only for `u` below 1.
 fn smoothstep(u: u16) -> u16 {
     let squared = (mul_unsigned(u, u) >> 15) as u16;
-    (mul_unsigned(squared, 3 * (END / 2) - u) >> 14) as u16
+    (mul_unsigned(squared, 3 * (FULL_DURATION / 2) - u) >> 14) as u16
 }
 
 #[cfg(test)]
@@ -98,7 +98,7 @@ mod tests {
     fn course(from: &Pose, to: &Pose, slew: Slew) -> Vec<Pose> {
         let mut path = PointToPoint::new(from, to, slew);
         let mut poses = Vec::from([*from]);
-        while !path.arrived() {
+        while !path.has_arrived() {
             path.advance(FULL);
             poses.push(path.pose());
             assert!(poses.len() < 4000, "{from:?} to {to:?} never ends");
@@ -146,7 +146,7 @@ mod tests {
             let mut frame = 0.0;
             let distance = f64::from(to) - f64::from(from);
             let mut before = f64::from(from);
-            while !path.arrived() {
+            while !path.has_arrived() {
                 path.advance(FULL);
                 frame += f64::from(path.step) / 32_768.0;
                 let u = f64::min(frame, 1.0);
@@ -169,7 +169,7 @@ mod tests {
             let ways: [f64; 4] = core::array::from_fn(|n| f64::from(to[n]) - f64::from(from[n]));
             let [from, to] = [from, to].map(pose);
             let mut path = PointToPoint::new(&from, &to, slew);
-            while !path.arrived() {
+            while !path.has_arrived() {
                 path.advance(FULL);
                 let here = path.pose();
                 let share = f64::from(path.elapsed) / 32_768.0;
@@ -240,6 +240,6 @@ mod tests {
         let here = path.pose();
         path.advance(0);
         assert_eq!(path.pose(), here);
-        assert!(!path.arrived());
+        assert!(!path.has_arrived());
     }
 }

@@ -34,18 +34,18 @@ impl Calibration {
 
     /// The pulse width that turns the servo to `sweep`.
     pub fn width(&self, sweep: Sweep) -> Width {
-        Width(self.neutral.0.wrapping_add(self.turned(sweep) as u16))
+        Width(self.neutral.0.wrapping_add(self.pulse_change(sweep) as u16))
     }
 
     /// The pulse width for any sweep, even one beyond the travel, clamped to 0..=65535.
     #[inline(never)]
     pub fn pulse(&self, sweep: Sweep) -> u16 {
-        let pulse = i32::from(self.neutral.0) + self.turned(sweep);
+        let pulse = i32::from(self.neutral.0) + self.pulse_change(sweep);
         pulse.clamp(0, i32::from(u16::MAX)) as u16
     }
 
     /// The change of the pulse width for a sweep from neutral, CPU cycles.
-    fn turned(&self, sweep: Sweep) -> i32 {
+    fn pulse_change(&self, sweep: Sweep) -> i32 {
         (mul(sweep.0, self.gain) + (1 << 13)) >> 14
     }
 

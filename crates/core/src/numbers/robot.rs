@@ -18,7 +18,7 @@ use crate::numbers::gaits::{Gait, GaitId, Name, Step, Wave};
 use crate::numbers::limits::Limits;
 use crate::numbers::part::{End, Servo, Side};
 use crate::numbers::pose::Pose;
-use crate::numbers::section::{self, CURVES, Header, MapHead, NUMBERS, Numbers, Part, Place};
+use crate::numbers::section::{self, CURVES, Header, MapHeader, NUMBERS, Numbers, Part, PartRange};
 use crate::numbers::slew::Slew;
 use crate::numbers::slider::Slider;
 use crate::numbers::supplies::Supplies;
@@ -168,7 +168,7 @@ impl<'a> Robot<'a> {
 
     /// The pulse widths and the travel of one servo.
     #[inline(never)]
-    pub fn servo(&self, servo: Servo) -> Calibration {
+    pub fn calibration_of(&self, servo: Servo) -> Calibration {
         self.number(offset_of!(Numbers, calibration) + servo.index() * size_of::<Calibration>())
     }
 
@@ -186,20 +186,20 @@ impl<'a> Robot<'a> {
     /// The number of gaits; the first is `stand`, which holds the neutral pose.
     pub fn gait_count(&self) -> usize {
         match self.is_present {
-            true => usize::from(self.place(Part::Gaits).count),
+            true => usize::from(self.part_range(Part::Gaits).count),
             false => 0,
         }
     }
 
     /// The address of a part and the number of its elements.
-    pub(crate) fn place(&self, part: Part) -> Place {
-        self.number(offset_of!(Numbers, parts) + part as usize * size_of::<Place>())
+    pub(crate) fn part_range(&self, part: Part) -> PartRange {
+        self.number(offset_of!(Numbers, parts) + part as usize * size_of::<PartRange>())
     }
 
     /// All elements of a part.
     #[inline(always)]
     fn part<T: Plain>(&self, part: Part) -> Flash<'a, [T]> {
-        let Place { at, count } = self.place(part);
+        let PartRange { at, count } = self.part_range(part);
         self.section.values(at, count)
     }
 
@@ -227,7 +227,7 @@ impl<'a> Robot<'a> {
     #[inline(never)]
     pub fn name(&self, id: GaitId) -> Name<'a> {
         // Reads only these fields, not the entire gait: a line may be compared with every name.
-        let gait = self.place(Part::Gaits).at + id.index() as u16 * size_of::<Gait>() as u16;
+        let gait = self.part_range(Part::Gaits).at + id.index() as u16 * size_of::<Gait>() as u16;
         let number = |field: usize| self.section.read(gait + field as u16);
         let start = number(offset_of!(Gait, name_start));
         let length = number(offset_of!(Gait, name_length));
@@ -241,8 +241,8 @@ impl<'a> Robot<'a> {
         let mut first_row = 0;
         let mut pair_index = 0;
         while pair_index < 4 {
-            let MapHead { first, rows } =
-                self.number(offset_of!(Numbers, maps) + pair_index * size_of::<MapHead>());
+            let MapHeader { first, rows } =
+                self.number(offset_of!(Numbers, maps) + pair_index * size_of::<MapHeader>());
             let [row, column] = PAIRS.at(pair_index).load();
             let row = pose.0[usize::from(row & 3)];
             let column = pose.0[usize::from(column & 3)];

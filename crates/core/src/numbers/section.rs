@@ -100,7 +100,7 @@ lizard_avr::plain! {
         /// not needed.
         pub curves: [[u16; CURVES]; 2],
         /// The parts, in the order of [`Part`].
-        pub parts: [Place; PARTS],
+        pub parts: [PartRange; PARTS],
         /// The Arduino number of the pin where the servos' rail is measured; 0 if it is not measured.
         pub rail: u8,
         /// The percentage of their own pace to which a low supply limits gaits, 10 to 100.
@@ -109,7 +109,7 @@ lizard_avr::plain! {
         pub pins: [u8; 4],
         /// The headers of the maps of head, tail, left and right. They are the last field, because the hash does not
         /// include them.
-        pub maps: [MapHead; 4],
+        pub maps: [MapHeader; 4],
     }
 }
 
@@ -140,7 +140,7 @@ pub const PARTS: usize = 4;
 lizard_avr::plain! {
 /// The address and size of a part of the section.
     #[derive(Debug, PartialEq, Eq)]
-    pub struct Place {
+    pub struct PartRange {
         /// Bytes from the section's beginning.
         pub at: u16,
         /// The number of elements.
@@ -151,7 +151,7 @@ lizard_avr::plain! {
 lizard_avr::plain! {
     /// The header of a map of certified cells.
     #[derive(Debug, PartialEq, Eq)]
-    pub struct MapHead {
+    pub struct MapHeader {
         /// The number of the first row.
         pub first: i8,
         /// The number of rows.

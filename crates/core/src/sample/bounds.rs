@@ -2,10 +2,10 @@
 
 pub use crate::guard::bounds::*;
 
-use super::Loop;
+use super::SampleFiveBar;
 
-impl From<&Loop> for Bars {
-    fn from(bars: &Loop) -> Self {
+impl From<&SampleFiveBar> for RoundedBars {
+    fn from(bars: &SampleFiveBar) -> Self {
         Self {
             scale: bars.scale,
             couplers: [bars.couplers.left, bars.couplers.right],

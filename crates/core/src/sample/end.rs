@@ -12,16 +12,16 @@ use crate::numbers::units::Scale;
 
 /// One five-bar linkage, head or tail, with the tables of its couplers. Its lengths are in steps.
 #[derive(Clone, Debug)]
-pub struct Loop {
+pub struct SampleFiveBar {
     /// The base, the left and the right crank. Their sum is the largest distance between the crank tips.
     pub bars: [i16; 3],
     pub scale: Scale,
-    pub couplers: Bars,
+    pub couplers: SampleCouplers,
 }
 
 /// Both couplers, in steps, and their tables.
 #[derive(Clone, Debug)]
-pub struct Bars {
+pub struct SampleCouplers {
     pub left: i16,
     pub right: i16,
     rise: Table,
@@ -30,7 +30,7 @@ pub struct Bars {
     skew: Option<Table>,
 }
 
-impl Bars {
+impl SampleCouplers {
     pub fn new(left: i16, right: i16) -> Self {
         let unequal = left != right;
         Self {
@@ -57,7 +57,7 @@ impl Bars {
     }
 }
 
-impl Loop {
+impl SampleFiveBar {
     /// Converts bars from mm to the finest steps in which each coupler and the sum of the other bars are below
     /// [`bars::MAX_STEPS`]; `None` if even steps of 1 mm are too fine, or if a coupler is shorter than
     /// [`bars::MIN_COUPLER`] then.
@@ -76,7 +76,7 @@ impl Loop {
         Some(Self {
             bars: [base, left, right].map(|mm| steps(mm, scale) as i16),
             scale,
-            couplers: Bars::new(a, b),
+            couplers: SampleCouplers::new(a, b),
         })
     }
 
@@ -93,7 +93,7 @@ impl Loop {
     }
 
     pub fn five_bar(&self) -> FiveBar<'_> {
-        let Bars { left, right, .. } = self.couplers;
+        let SampleCouplers { left, right, .. } = self.couplers;
         let bars = bars::Bars::new(self.bars, [left, right], self.scale);
         FiveBar::new(bars, self.couplers.tables())
     }

@@ -6,24 +6,24 @@ use crate::memory::restart::Cause;
 use crate::motion::Activity;
 use crate::motion::Motion;
 use crate::sample::Sample;
-use crate::virtual_board::{Running, Transmitter, VirtualBoard};
+use crate::virtual_board::{RunningRobot, Transmitter, VirtualBoard};
 
 /// A robot whose program starts at this tick, with these bytes already received.
-fn begun(ticks: u8, received: &str) -> Running {
+fn begun(ticks: u8, received: &str) -> RunningRobot {
     let mut board = VirtualBoard::default().at_tick(ticks);
     board.send(received.as_bytes());
-    Running::with_flash(Sample::odd().section(), board)
+    RunningRobot::with_flash(Sample::odd().section(), board)
 }
 
 /// True if the main loop did something in this step.
-fn works(running: &mut Running) -> bool {
+fn run_step(running: &mut RunningRobot) -> bool {
     running.main.step(&mut running.board) == Step::Worked
 }
 
 /// A robot that stands and has received a line of garbled bytes, as from a sender at another rate.
-fn hearing_another_rate() -> Running {
-    let mut running = Running::power_on(*Sample::odd());
-    running.run(10);
+fn hearing_another_rate() -> RunningRobot {
+    let mut running = RunningRobot::power_on(*Sample::odd());
+    running.run_frames(10);
     running
         .board
         .send(&[GARBLED, 0x80, GARBLED, GARBLED, b'\n']);
@@ -31,7 +31,7 @@ fn hearing_another_rate() -> Running {
 }
 
 /// The lines written so far.
-fn written(running: &Running) -> usize {
+fn written(running: &RunningRobot) -> usize {
     running.board.transmitter.text.lines().count()
 }
 
@@ -39,21 +39,21 @@ fn written(running: &Running) -> usize {
 fn a_tick_comes_before_output_and_output_before_input() {
     let mut running = begun(7, "speed 50\r");
     running.board.tick();
-    assert!(works(&mut running));
+    assert!(run_step(&mut running));
     assert!(running.board.is_frame_pending());
     assert_eq!((written(&running), running.board.unread()), (0, 9));
-    assert!(works(&mut running));
+    assert!(run_step(&mut running));
     assert!(running.board.transmitter.text.starts_with("# lizard "));
     assert_eq!(written(&running), 1, "one line at a time");
     while written(&running) < 2 || running.main.control().is_writing() {
-        assert!(works(&mut running));
+        assert!(run_step(&mut running));
     }
     assert_eq!(running.board.unread(), 9);
     running.board.tick();
-    assert!(works(&mut running));
+    assert!(run_step(&mut running));
     assert_eq!(running.motion().frames(), 2);
     assert_eq!(running.board.unread(), 9);
-    assert!(works(&mut running));
+    assert!(run_step(&mut running));
     assert_eq!(running.board.unread(), 8, "one byte at a time");
 }
 
@@ -66,7 +66,7 @@ fn nothing_is_written_without_room_for_the_longest_line_but_frames_go_on() {
     assert_eq!(running.main.step(&mut running.board), Step::Idle(0));
     assert_eq!((written(&running), running.board.unread()), (0, 9));
     running.board.tick();
-    assert!(works(&mut running));
+    assert!(run_step(&mut running));
     assert_eq!(running.main.step(&mut running.board), Step::Idle(1));
     assert_eq!((written(&running), running.board.unread()), (0, 9));
     running.board.transmitter = Transmitter::default();
@@ -84,7 +84,7 @@ fn of_several_ticks_at_once_one_gets_a_frame_even_if_the_count_wraps() {
         for _ in 0..frames % 11 + 1 {
             running.board.tick();
         }
-        assert!(works(&mut running));
+        assert!(run_step(&mut running));
         running.settle();
         assert_eq!(running.motion().frames(), frames);
     }
@@ -94,7 +94,7 @@ fn of_several_ticks_at_once_one_gets_a_frame_even_if_the_count_wraps() {
 fn only_the_end_of_the_pulses_replaces_a_frame_that_waits_to_be_played() {
     for rests in [false, true] {
         let mut running = begun(0, "");
-        running.run(100);
+        running.run_frames(100);
         // The main loop is late for a tick, so its frame waits until after the next tick.
         running.board.pass_time(1 + 5);
         running.settle();
@@ -129,7 +129,7 @@ fn the_pulses_handed_over_are_those_of_the_motion_and_counters_reach_status() {
         assert_eq!(running.board.submitted(), alone.tick());
     }
     running.board.count_lost(34);
-    let status = running.say("status");
+    let status = running.send_line("status");
     assert!(status.contains(" frames=30 late=0 rx_lost=34 "), "{status}");
 }
 
@@ -177,7 +177,7 @@ fn the_servos_state_is_kept_in_every_frame_even_at_rest() {
             assert!(pulse.0 == 0 || pulse == *sent);
         }
     }
-    running.say("rest");
+    running.send_line("rest");
     running.frame();
     let stored = running.board.stored_stance().expect("a stance");
     assert!(stored.is_resting);
@@ -186,8 +186,8 @@ fn the_servos_state_is_kept_in_every_frame_even_at_rest() {
 
 #[test]
 fn a_slow_memory_holds_up_the_input_and_no_frame() {
-    let mut running = Running::power_on(*Sample::odd());
-    running.run(10);
+    let mut running = RunningRobot::power_on(*Sample::odd());
+    running.run_frames(10);
     running.board.send(b"save\rstand\r");
     running.board.memory.slowness = 50;
     let mut steps = 0;
@@ -198,7 +198,7 @@ fn a_slow_memory_holds_up_the_input_and_no_frame() {
         if steps % 7 == 0 {
             running.board.tick();
         }
-        assert!(works(&mut running));
+        assert!(run_step(&mut running));
         assert!(steps < 20_000);
     }
     assert!(running.board.memory.log.len() > 40 && steps > 40 * 50);
@@ -212,12 +212,12 @@ fn the_rest_of_a_line_begun_at_another_rate_is_not_obeyed_but_the_next_is() {
     let mut running = hearing_another_rate();
     running.board.send(b"bo");
     assert_eq!(running.board.rate, Rate::Fastest);
-    running.run(3);
+    running.run_frames(3);
     assert_eq!(running.board.rate, Rate::Half, "after a pause");
-    let text = running.say("rest");
+    let text = running.send_line("rest");
     assert_eq!(text, "err 1 the line came garbled, send it again");
     assert!(!running.motion().is_resting());
-    assert_eq!(running.say("rest"), "ok rest");
+    assert_eq!(running.send_line("rest"), "ok rest");
     for (cause, rate) in [
         (Cause::Watchdog, Rate::Half),
         (Cause::External, Rate::Fastest),
@@ -232,16 +232,16 @@ fn the_rate_does_not_change_while_bytes_wait_behind_an_answer() {
     let mut running = hearing_another_rate();
     running.run_without_reader(10);
     assert_eq!(running.board.rate, Rate::Fastest);
-    running.run(3);
+    running.run_frames(3);
     assert_eq!(running.board.rate, Rate::Half);
 }
 
 #[test]
 fn a_late_edge_and_a_stack_in_the_data_reach_the_robot() {
     let mut running = begun(0, "");
-    running.run(1);
-    running.board.late = 1;
-    let printed = running.run(1);
+    running.run_frames(1);
+    running.board.late_edges = 1;
+    let printed = running.run_frames(1);
     assert!(
         printed
             .iter()
@@ -249,7 +249,7 @@ fn a_late_edge_and_a_stack_in_the_data_reach_the_robot() {
         "{printed:?}"
     );
     running.board.is_stack_intact = false;
-    let printed = running.run(1);
+    let printed = running.run_frames(1);
     assert!(
         printed
             .iter()

@@ -10,7 +10,7 @@ pub struct Converter {
     actual: Reading,
     /// True if the servos' rail is measured too.
     has_rail: bool,
-    read: Reading,
+    last_reading: Reading,
     /// The number of the frame within a round of measurements.
     frames: u8,
     is_complete: bool,
@@ -32,7 +32,7 @@ impl Converter {
     }
 
     /// The actual supplies.
-    pub const fn truth(&self) -> Reading {
+    pub const fn actual(&self) -> Reading {
         self.actual
     }
 
@@ -49,11 +49,11 @@ impl Converter {
     pub(super) fn next(&mut self) -> Reading {
         match self.frames {
             1 => {
-                self.read.reference = self.actual.reference;
+                self.last_reading.reference = self.actual.reference;
                 self.is_complete |= !self.has_rail;
             }
             3 => {
-                self.read.rail = self.actual.rail;
+                self.last_reading.rail = self.actual.rail;
                 self.is_complete = true;
             }
             _ => {}
@@ -61,7 +61,7 @@ impl Converter {
         let period = if self.has_rail { 4 } else { 2 };
         self.frames = (self.frames + 1) % period;
         if self.is_complete {
-            self.read
+            self.last_reading
         } else {
             Reading::default()
         }
@@ -69,7 +69,7 @@ impl Converter {
 }
 
 /// The converter's reading of the supply voltages `board` and `rail`, mV; the rail is measured through its divider.
-pub fn reading(supplies: &Supplies, board: u32, rail: u32) -> Reading {
+pub fn compute_reading(supplies: &Supplies, board: u32, rail: u32) -> Reading {
     let board = u64::from(board);
     let parts = |mv: u64| ((1024 * mv + board / 2) / board.max(1)).min(1023) as u16;
     let reference = u64::from(supplies.reference);

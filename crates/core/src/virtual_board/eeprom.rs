@@ -19,11 +19,11 @@ pub struct Eeprom {
     pub is_worn: bool,
     /// Every write of a byte: address, old value, new value.
     pub log: Vec<(u16, u8, u8)>,
-    busy: Cell<u16>,
+    remaining_delay: Cell<u16>,
     /// True if the last poll found the EEPROM busy; only set if `is_timed`.
     was_polled_busy: Cell<bool>,
     /// Address of the byte that is being written.
-    under_way: Cell<Option<u16>>,
+    address_in_write: Cell<Option<u16>>,
 }
 
 impl Default for Eeprom {
@@ -37,8 +37,8 @@ impl Hash for Eeprom {
         self.bytes.hash(state);
         self.is_worn.hash(state);
         self.log.hash(state);
-        self.busy.get().hash(state);
-        self.under_way.get().hash(state);
+        self.remaining_delay.get().hash(state);
+        self.address_in_write.get().hash(state);
     }
 }
 
@@ -56,9 +56,9 @@ impl Eeprom {
             is_timed: false,
             is_worn: false,
             log: Vec::new(),
-            busy: Cell::new(0),
+            remaining_delay: Cell::new(0),
             was_polled_busy: Cell::new(false),
-            under_way: Cell::new(None),
+            address_in_write: Cell::new(None),
         }
     }
 
@@ -74,7 +74,7 @@ impl Eeprom {
 
     /// The address of the byte that is being written.
     pub fn address_in_write(&self) -> Option<u16> {
-        self.under_way.get()
+        self.address_in_write.get()
     }
 
     /// True if the last poll found the EEPROM busy and only the passing of time makes it ready. Clears the flag.
@@ -84,56 +84,67 @@ impl Eeprom {
 
     /// Lets a millisecond pass.
     pub(super) fn pass_time(&mut self) {
-        let busy = self.busy.get().saturating_sub(u16::from(self.is_timed));
-        self.busy.set(busy);
+        let busy = self
+            .remaining_delay
+            .get()
+            .saturating_sub(u16::from(self.is_timed));
+        self.remaining_delay.set(busy);
         if busy == 0 {
-            self.under_way.set(None);
+            self.address_in_write.set(None);
         }
     }
 
     /// Completes the write of a byte at once.
     pub(super) fn settle(&mut self) {
-        self.busy.set(0);
-        self.under_way.set(None);
+        self.remaining_delay.set(0);
+        self.address_in_write.set(None);
     }
 
     /// Cuts the power: a byte that is being written gets this value.
     pub(super) fn cut_power(&mut self, byte: u8) {
-        if let Some(address) = self.under_way.take() {
+        if let Some(address) = self.address_in_write.take() {
             self.bytes_mut()[usize::from(address)] = byte;
         }
-        self.busy.set(0);
+        self.remaining_delay.set(0);
     }
 }
 
 impl Memory for Eeprom {
     fn is_ready(&self) -> bool {
-        let busy = self.busy.get();
+        let busy = self.remaining_delay.get();
         if self.is_timed {
             self.was_polled_busy.set(busy > 0);
         } else {
-            self.busy.set(busy.saturating_sub(1));
+            self.remaining_delay.set(busy.saturating_sub(1));
         }
         if busy == 0 {
-            self.under_way.set(None);
+            self.address_in_write.set(None);
         }
         busy == 0
     }
 
     fn read(&self, address: u16) -> u8 {
-        assert_eq!(self.busy.get(), 0, "read while it is being written");
+        assert_eq!(
+            self.remaining_delay.get(),
+            0,
+            "read while it is being written"
+        );
         self.bytes[usize::from(address)]
     }
 
     fn write(&mut self, address: u16, byte: u8) {
-        assert_eq!(self.busy.get(), 0, "written while it is being written");
+        assert_eq!(
+            self.remaining_delay.get(),
+            0,
+            "written while it is being written"
+        );
         let before = self.bytes[usize::from(address)];
         assert_ne!(before, byte, "written for nothing");
         self.log.push((address, before, byte));
         if !self.is_worn {
             self.bytes_mut()[usize::from(address)] = byte;
         }
-        self.busy.set(self.slowness);
-        self.under_way.set(Some(address));
+        self.remaining_delay.set(self.slowness);
+        self.address_in_write.set(Some(address));
     }
 }

@@ -41,7 +41,7 @@ impl Cells for Ram {
 impl Ram {
     /// The state that the program would find if it started now; changes nothing. `reported` is the cause that the
     /// chip reports, or `None` if a boot loader hides it.
-    pub fn found(&self, reported: Option<Cause>) -> Restart {
+    pub fn peek_restart(&self, reported: Option<Cause>) -> Restart {
         kept::begin(&self.clone(), reported)
     }
 

@@ -5,7 +5,7 @@ use std::vec::Vec;
 
 use lizard_avr::Region;
 
-use super::{Converter, Eeprom, VirtualBoard, reading};
+use super::{Converter, Eeprom, VirtualBoard, compute_reading};
 use crate::console::LONGEST_LINE;
 use crate::memory::restart::{Cause, Restart};
 use crate::motion::Motion;
@@ -15,7 +15,7 @@ use crate::step::{Main, Step};
 
 /// The firmware's main loop and its board.
 #[derive(Clone, Debug)]
-pub struct Running {
+pub struct RunningRobot {
     /// The firmware's main loop.
     pub main: Main,
     /// The board that it runs on.
@@ -24,18 +24,18 @@ pub struct Running {
     flash: Region<'static>,
 }
 
-impl Running {
+impl RunningRobot {
     /// A robot at power-on, with good supplies and nothing saved.
     pub fn power_on(robot: Robot<'static>) -> Self {
-        Self::with(robot, Eeprom::blank(), Restart::default())
+        Self::with_memory(robot, Eeprom::blank(), Restart::default())
     }
 
     /// A robot with this memory, after a restart with this cause and state.
-    pub fn with(robot: Robot<'static>, memory: Eeprom, restart: Restart) -> Self {
+    pub fn with_memory(robot: Robot<'static>, memory: Eeprom, restart: Restart) -> Self {
         let supplies = robot.supplies();
         // A rail voltage well above its thresholds.
         let rail = u32::from(supplies.rail.slow) + 1_000;
-        let truth = reading(&supplies, 5_000, rail.max(6_000));
+        let truth = compute_reading(&supplies, 5_000, rail.max(6_000));
         let board = VirtualBoard {
             converter: Converter::new(truth, supplies.rail_reference != 0),
             ..VirtualBoard::new(memory).restarted(restart)
@@ -86,7 +86,7 @@ impl Running {
     /// its four pulses begin. Returns these pulses.
     pub fn frame(&mut self) -> Pulses {
         self.settle();
-        self.board.pass_time(self.board.until_tick());
+        self.board.pass_time(self.board.ms_until_tick());
         self.settle();
         // The main loop also runs between the pulses.
         for ms in [4, 4, 4, 4, 3] {
@@ -97,11 +97,11 @@ impl Running {
     }
 
     /// Runs frames and returns their output.
-    pub fn run(&mut self, frames: u32) -> Vec<String> {
+    pub fn run_frames(&mut self, frames: u32) -> Vec<String> {
         let mut printed = Vec::new();
         for _ in 0..frames {
             self.frame();
-            printed.extend(self.lines());
+            printed.extend(self.read_lines());
         }
         printed
     }
@@ -119,7 +119,7 @@ impl Running {
     ///
     /// # Panics
     /// If a line has a wrong form.
-    pub fn lines(&mut self) -> Vec<String> {
+    pub fn read_lines(&mut self) -> Vec<String> {
         self.settle();
         let text = core::mem::take(&mut self.board.transmitter.text);
         let mut lines = Vec::new();
@@ -136,10 +136,10 @@ impl Running {
 
     /// Sends bytes one by one, reading the output before each, and returns all output.
     pub fn send(&mut self, bytes: &[u8]) -> Vec<String> {
-        let mut lines = self.lines();
+        let mut lines = self.read_lines();
         for byte in bytes {
             self.board.send(&[*byte]);
-            lines.extend(self.lines());
+            lines.extend(self.read_lines());
         }
         lines
     }
@@ -148,8 +148,8 @@ impl Running {
     ///
     /// # Panics
     /// If the answer does not end with exactly one final line.
-    pub fn say(&mut self, line: &str) -> String {
-        self.lines();
+    pub fn send_line(&mut self, line: &str) -> String {
+        self.read_lines();
         let mut printed = self.send(line.as_bytes());
         printed.extend(self.send(b"\r"));
         let last = printed.iter().position(|line| is_final(line));
@@ -169,8 +169,8 @@ impl Running {
     /// # Panics
     /// If the answer is not `ok` followed by the line.
     #[track_caller]
-    pub fn accept(&mut self, line: &str) {
-        assert_eq!(self.say(line), std::format!("ok {line}"));
+    pub fn expect_accepted(&mut self, line: &str) {
+        assert_eq!(self.send_line(line), std::format!("ok {line}"));
     }
 
     /// Sends a line, which must be refused with an answer that begins with `err` and `reason`.
@@ -178,8 +178,8 @@ impl Running {
     /// # Panics
     /// If the line is accepted, or refused for another reason.
     #[track_caller]
-    pub fn refuse(&mut self, line: &str, reason: &str) {
-        let answer = self.say(line);
+    pub fn expect_refused(&mut self, line: &str, reason: &str) {
+        let answer = self.send_line(line);
         let refused = answer
             .strip_prefix("err ")
             .is_some_and(|text| text.starts_with(reason));
@@ -191,14 +191,14 @@ impl Running {
     /// # Panics
     /// If the status line has no such key.
     pub fn status(&mut self, key: &str) -> String {
-        let line = self.say("status");
+        let line = self.send_line("status");
         let pairs = line.split(' ').filter_map(|word| word.split_once('='));
         let value = pairs.into_iter().find(|(name, _)| *name == key);
         value.expect("a key of status").1.to_string()
     }
 }
 
-impl Running {
+impl RunningRobot {
     /// Lets time pass in which the main loop hangs. Once the watchdog has ended the pulses, the loop stays stopped
     /// until the reset. Returns true if the reset comes.
     pub fn stall(&mut self, ms: u16) -> bool {

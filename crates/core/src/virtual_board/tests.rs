@@ -8,9 +8,9 @@ use crate::sample::Sample;
 use crate::step::{Main, Step};
 
 /// A robot that stands.
-fn standing() -> Running {
-    let mut running = Running::power_on(*Sample::odd());
-    running.run(30);
+fn standing() -> RunningRobot {
+    let mut running = RunningRobot::power_on(*Sample::odd());
+    running.run_frames(30);
     running
 }
 
@@ -69,7 +69,7 @@ fn a_stall_below_125_ms_changes_nothing_and_a_longer_one_restarts_the_program() 
     assert_eq!(long.board.restart().cause, Cause::Watchdog);
     assert_eq!(long.board.restart().count, 1);
     assert_eq!(
-        long.board.restart().before.map(|stance| stance.pose),
+        long.board.restart().stance_before.map(|stance| stance.pose),
         Some(pose)
     );
 }
@@ -77,13 +77,17 @@ fn a_stall_below_125_ms_changes_nothing_and_a_longer_one_restarts_the_program() 
 #[test]
 fn a_reset_leaves_the_pose_and_power_takes_it() {
     let mut running = standing();
-    running.say("sway");
-    running.run(60);
+    running.send_line("sway");
+    running.run_frames(60);
     let pose = *running.motion().pose();
     running.board.send(b"stand\r");
     running.reset(Cause::External);
     assert_eq!(
-        running.board.restart().before.map(|stance| stance.pose),
+        running
+            .board
+            .restart()
+            .stance_before
+            .map(|stance| stance.pose),
         Some(pose)
     );
     assert_eq!(running.board.unread(), 0, "what main had not read is lost");
@@ -138,8 +142,11 @@ fn nothing_is_measured_before_a_whole_measurement_and_each_part_in_its_turn() {
 #[test]
 fn bytes_beyond_what_the_receiver_holds_are_lost_and_counted() {
     let mut board = VirtualBoard::default();
-    board.send(&[b'x'; RECEIVED + 5]);
-    assert_eq!((board.unread(), board.counters().rx_lost), (RECEIVED, 5));
+    board.send(&[b'x'; RECEIVE_CAPACITY + 5]);
+    assert_eq!(
+        (board.unread(), board.counters().rx_lost),
+        (RECEIVE_CAPACITY, 5)
+    );
     let mut main = Main::new();
     main.begin(Sample::odd().section(), &mut board);
     while main.step(&mut board) == Step::Worked {}
@@ -150,18 +157,18 @@ fn bytes_beyond_what_the_receiver_holds_are_lost_and_counted() {
 fn the_first_pulse_after_a_reset_is_at_most_the_frame_on_its_way_then() {
     // Settings that change before the servos wake must not move them beyond the last submitted frame: the first
     // pulses repeat it, and the slew limit counts from there.
-    let mut running = Running::power_on(*Sample::odd());
-    running.run(200);
-    running.say("sway");
-    running.run(60);
+    let mut running = RunningRobot::power_on(*Sample::odd());
+    running.run_frames(200);
+    running.send_line("sway");
+    running.run_frames(60);
     let before = running.board.started_pulses();
-    running.board.pass_time(running.board.until_tick());
+    running.board.pass_time(running.board.ms_until_tick());
     running.settle();
     running.reset(Cause::External);
     let on_its_way = *running.motion().sent();
     assert_ne!(before, on_its_way, "a frame was on its way");
     for servo in 1..=4 {
-        running.say(&format!("scale {servo} 9.3"));
+        running.send_line(&format!("scale {servo} 9.3"));
     }
     let mut first = [None; 4];
     while first.contains(&None) {
@@ -176,7 +183,7 @@ fn the_first_pulse_after_a_reset_is_at_most_the_frame_on_its_way_then() {
 }
 
 /// The largest change of each servo's pulse width from one frame to the next, cycles.
-fn leaps(running: &mut Running, frames: usize) -> [u16; 4] {
+fn leaps(running: &mut RunningRobot, frames: usize) -> [u16; 4] {
     let mut last = *running.motion().sent();
     let mut leaps = [0; 4];
     for _ in 0..frames {
@@ -198,19 +205,23 @@ fn settings_changed_at_rest_turn_no_servo_faster_than_the_slew_limit() {
     let max = robot.calibration().map(|servo| servo.slew(per_frame));
     for reset in [None, Some(Cause::External), Some(Cause::Watchdog)] {
         let mut running = standing();
-        running.say("sway");
-        running.run(60);
-        running.say("rest");
-        running.run(60);
+        running.send_line("sway");
+        running.run_frames(60);
+        running.send_line("rest");
+        running.run_frames(60);
         let before = *running.motion().sent();
         for servo in 1..=4 {
-            assert!(running.say(&format!("trim {servo} 6")).starts_with("ok"));
+            assert!(
+                running
+                    .send_line(&format!("trim {servo} 6"))
+                    .starts_with("ok")
+            );
         }
         if let Some(cause) = reset {
             running.reset(cause);
-            running.run(60);
+            running.run_frames(60);
         }
-        running.say("stand");
+        running.send_line("stand");
         let leaps = leaps(&mut running, 200);
         for servo in 0..4 {
             assert!(leaps[servo] <= max[servo], "{leaps:?}, {max:?}");

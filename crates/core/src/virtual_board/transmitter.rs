@@ -7,7 +7,7 @@ use std::string::String;
 use ufmt::uWrite;
 
 /// CPU cycles in a millisecond.
-const MS: u64 = 16_000;
+const CYCLES_PER_MS: u64 = 16_000;
 
 /// The transmitter of the serial line.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -23,7 +23,7 @@ pub struct Transmitter {
     /// The current cycle.
     now: u64,
     /// The cycle at which the last written byte is sent.
-    free: u64,
+    idle_from: u64,
 }
 
 impl Default for Transmitter {
@@ -37,7 +37,7 @@ impl Hash for Transmitter {
     fn hash<H: Hasher>(&self, state: &mut H) {
         self.text.hash(state);
         self.is_held.hash(state);
-        self.left().hash(state);
+        self.cycles_left().hash(state);
     }
 }
 
@@ -50,13 +50,13 @@ impl Transmitter {
             per_byte,
             capacity,
             now: 0,
-            free: 0,
+            idle_from: 0,
         }
     }
 
     /// Lets milliseconds pass.
     pub(super) const fn pass_time(&mut self, ms: u64) {
-        self.now += ms * MS;
+        self.now += ms * CYCLES_PER_MS;
     }
 
     /// Sets the current cycle.
@@ -66,12 +66,12 @@ impl Transmitter {
 
     /// The cycle at which the last written byte is sent.
     pub const fn free(&self) -> u64 {
-        self.free
+        self.idle_from
     }
 
     /// Adds bytes that are still to be sent, as if left from an earlier run.
     pub const fn fill(&mut self, bytes: u64) {
-        self.free = self.now + bytes * self.per_byte;
+        self.idle_from = self.now + bytes * self.per_byte;
     }
 
     /// Bytes that the transmitter accepts without waiting, at most 255; none while it is held.
@@ -79,17 +79,17 @@ impl Transmitter {
         if self.is_held {
             return 0;
         }
-        let queued = self.left().div_ceil(self.per_byte.max(1));
+        let queued = self.cycles_left().div_ceil(self.per_byte.max(1));
         self.capacity.saturating_sub(queued).min(255) as u8
     }
 
-    fn left(&self) -> u64 {
-        self.free.saturating_sub(self.now)
+    fn cycles_left(&self) -> u64 {
+        self.idle_from.saturating_sub(self.now)
     }
 
     pub(super) fn reset(self) -> Self {
         Self {
-            free: self.now,
+            idle_from: self.now,
             ..self
         }
     }
@@ -100,7 +100,7 @@ impl uWrite for Transmitter {
 
     fn write_str(&mut self, text: &str) -> Result<(), Infallible> {
         self.text.push_str(text);
-        self.free = self.free.max(self.now) + self.per_byte * text.len() as u64;
+        self.idle_from = self.idle_from.max(self.now) + self.per_byte * text.len() as u64;
         Ok(())
     }
 }

@@ -5,14 +5,14 @@ use lizard_film::{Film, Gait, Mean, Measured, Sight, read};
 
 use crate::render::{Studio, normal};
 use crate::studio::{TRUE_SIZE, film, small};
-use crate::walk::{Varies, Walk, gait, truth};
+use crate::walk::{Variation, Walk, gait, truth};
 
 /// Films some cycles with a random camera and measures them.
 fn measured(
     gait: &Gait,
     cycles: usize,
     rate: f64,
-    varies: Varies,
+    varies: Variation,
     rng: &mut Rng,
 ) -> (Measured, Sight) {
     let mut studio = Studio::random(rng);
@@ -47,7 +47,7 @@ fn a_cycle_is_measured_to_a_fifth_of_a_millimetre_and_half_a_degree() {
     let mut rng = Rng::with_seed(1);
     for name in ["walk", "left"] {
         let gait = gait(name);
-        let (measured, sight) = measured(&gait, 5, 12.0, Varies::default(), &mut rng);
+        let (measured, sight) = measured(&gait, 5, 12.0, Variation::default(), &mut rng);
         assert!(measured.cycles.len() >= 3, "{:?}", measured.ends);
         for (i, (part, truth)) in parts(&measured, &gait).into_iter().enumerate() {
             let largest = [0.2, 0.2, 0.5][i];
@@ -57,7 +57,7 @@ fn a_cycle_is_measured_to_a_fifth_of_a_millimetre_and_half_a_degree() {
             );
             assert!(part.spread < largest, "{name} {i}: {part:?}");
         }
-        assert!(sight.error < 0.1 && !sight.moved);
+        assert!(sight.error < 0.1 && !sight.has_camera_moved);
         assert!((sight.deck - TRUE_SIZE.height).abs() < 3.0);
     }
 }
@@ -108,7 +108,7 @@ const NAMES: [&str; 3] = ["ahead, mm", "left, mm", "turn, deg"];
 #[ignore = "takes minutes; make measure-test"]
 fn in_short_films_the_truth_lies_within_two_errors_in_93_to_97_percent() {
     let films = number("FILMS", 200);
-    let varies = Varies {
+    let varies = Variation {
         cycle: [0.2, 0.2, 0.3f64.to_radians()],
         clock: 0.003,
         ruler: 1.0,
@@ -146,7 +146,7 @@ fn in_short_films_the_truth_lies_within_two_errors_in_93_to_97_percent() {
 fn ten_cycles_at_720p_on_a_tripod_have_no_bias_and_little_spread() {
     let films = number("FILMS", 200) / 10;
     let gaits = ["walk", "left", "crawl", "arc-left", "back"].map(gait);
-    let alike = Varies::default();
+    let alike = Variation::default();
     let all = each_film(films, &gaits, |gait, rng| {
         measured(gait, 10, 30.0, alike, rng).0
     });
@@ -178,7 +178,7 @@ fn a_camera_in_the_hand_measures_a_cycle_to_a_fifth_of_a_millimetre() {
     (studio.height, studio.tilt, studio.focal) = (750.0, 20.0, 0.75);
     (studio.direction, studio.roll, studio.aim) = (90.0, 0.0, [0.0; 2]);
     let start = [-2.5 * truth(&gait).forward, 0.0, 0.0];
-    let walk = Walk::new(&gait, start, 5, Varies::default(), &mut rng);
+    let walk = Walk::new(&gait, start, 5, Variation::default(), &mut rng);
     let mut film = Film::default();
     for i in 0..(walk.seconds() * 12.0) as usize {
         let mut here = studio.clone();
@@ -192,7 +192,7 @@ fn a_camera_in_the_hand_measures_a_cycle_to_a_fifth_of_a_millimetre() {
         film.add(seconds, &picture).expect("a picture");
     }
     let (measured, sight) = watched_gait(&film, &gait);
-    assert!(sight.moved);
+    assert!(sight.has_camera_moved);
     for (i, (part, truth)) in parts(&measured, &gait).into_iter().enumerate() {
         println!(
             "in the hand, {}: off by {:+.3}, one cycle's sd {:.3}",

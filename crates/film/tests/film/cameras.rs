@@ -6,7 +6,7 @@ use lizard_film::Film;
 use crate::accuracy::number;
 use crate::render::{Studio, normal};
 use crate::studio::{TRUE_SIZE, film_of};
-use crate::walk::{Varies, Walk, gait, truth};
+use crate::walk::{Variation, Walk, gait, truth};
 
 /// Cycles in a film.
 const CYCLES: usize = 6;
@@ -121,7 +121,7 @@ fn every_camera_measures_a_cycle_to_a_fifth_of_a_millimetre_and_half_a_degree() 
             &gait,
             [start, 0.0, 0.05],
             CYCLES,
-            Varies::default(),
+            Variation::default(),
             &mut rng,
         );
         let measured = film(&camera, &walk, &mut rng)

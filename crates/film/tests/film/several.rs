@@ -1,23 +1,23 @@
 //! Films of several gaits with rests between them.
 
 use fastrand::Rng;
-use lizard_film::{Gait, Likeness, Measured, Trouble, Watched, rest};
+use lizard_film::{AnalysedFilm, Gait, Likeness, Measured, Trouble, rest};
 
 use crate::render::Studio;
 use crate::studio::{TRUE_SIZE, film_of, small};
-use crate::walk::{Show, Varies, gait, truth};
+use crate::walk::{Show, Variation, gait, truth};
 
 /// Pictures per second.
 const RATE: f64 = 8.0;
 /// A small variation of the cycles, as real robots have it.
-const VARIES: Varies = Varies {
+const VARIES: Variation = Variation {
     cycle: [0.2, 0.2, 0.004],
     clock: 0.0,
     ruler: 0.0,
 };
 
 /// Films walks with rests of `rest` seconds between them, and finds the camera and the path.
-fn watched(walks: &[(&Gait, usize)], rest: f64) -> (Watched, Show) {
+fn watched(walks: &[(&Gait, usize)], rest: f64) -> (AnalysedFilm, Show) {
     let mut rng = Rng::with_seed(6);
     let show = Show::new([-60.0, 0.0, 0.0], walks, rest, VARIES, &mut rng);
     let robot = |time: f64| show.at(time);
@@ -165,7 +165,7 @@ fn a_robot_that_turns_its_head_between_walks_has_not_walked() {
 /// errors.
 fn farthest(measured: &Measured) -> (f64, usize, f64) {
     let all = measured.within.iter().flat_map(|point| {
-        let differs = point.differs().map(f64::abs);
+        let differs = point.standardized_differences().map(f64::abs);
         (0..3).map(move |axis| (point.phase, axis, differs[axis]))
     });
     all.max_by(|a, b| a.2.total_cmp(&b.2)).expect("a point")

@@ -1,7 +1,7 @@
 //! The accuracy of measurements in films of a robot that slides down a tilted board.
 
 use fastrand::Rng;
-use lizard_film::{Figure, Film, Setup, Slide, SlideTrouble, Watched};
+use lizard_film::{AnalysedFilm, Figure, Film, Setup, Slide, SlideTrouble};
 
 use crate::board::{BOARD, Board, studio};
 use crate::render::{Studio, normal};
@@ -24,7 +24,7 @@ fn slide(board: &Board) -> Result<Slide, SlideTrouble> {
     Slide::of(&watched(&film(board, &studio(), 30.0)))
 }
 
-fn watched(film: &Film) -> Watched {
+fn watched(film: &Film) -> AnalysedFilm {
     film.watch(SETUP).expect("it is watched")
 }
 

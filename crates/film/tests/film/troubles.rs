@@ -5,7 +5,7 @@ use lizard_film::{Film, Gait, Measured, Picture, Setup, Trouble};
 
 use crate::render::{Spot, Studio};
 use crate::studio::{TRUE_SIZE, film_of, small};
-use crate::walk::{Varies, Walk, gait, truth};
+use crate::walk::{Variation, Walk, gait, truth};
 
 /// Pictures per second: few suffice, since the tests check only the reason.
 const RATE: f64 = 8.0;
@@ -21,7 +21,7 @@ fn walk(gait: &Gait, cycles: usize) -> Walk {
         gait,
         [start, 0.0, 0.0],
         cycles,
-        Varies::default(),
+        Variation::default(),
         &mut Rng::with_seed(1),
     )
 }
@@ -148,7 +148,7 @@ fn a_camera_that_moves_has_to_see_every_tag_of_the_floor() {
     let watched = pushed(Vec::new())
         .watch(TRUE_SIZE)
         .expect("all tags are seen");
-    assert!(watched.sight.moved);
+    assert!(watched.sight.has_camera_moved);
     let measured = watched.measure(&gait, None).expect("it is measured");
     let error = measured.forward.mean - truth(&gait).forward;
     assert!(error.abs() < 0.3, "{:?}", measured.forward);

@@ -19,13 +19,13 @@ const LOAD: f64 = 0.111;
 /// A camera that makes no pictures but adds errors to angles: pictures per second, exposure time in s, and standard
 /// deviation of an angle in deg.
 #[derive(Clone, Copy)]
-struct Eye {
+struct AngleCamera {
     rate: f64,
     shutter: f64,
     noise: f64,
 }
 
-impl Eye {
+impl AngleCamera {
     /// A phone in daylight.
     fn of_rate(rate: f64) -> Self {
         Self {
@@ -101,7 +101,7 @@ fn the_truth_lies_within_two_errors_at_60_to_240_pictures_a_second() {
         let mut figures: [Vec<(Figure, f64)>; 4] = Default::default();
         for _ in 0..60 {
             let servo = any(&mut rng);
-            let path = Eye::of_rate(pictures).path(&servo, &mut rng);
+            let path = AngleCamera::of_rate(pictures).path(&servo, &mut rng);
             let turns = Turns::of(&path, JIG).expect("it is measured");
             let width = turns.dead_band.width.expect("a dead band");
             figures[0].push((turns.gain, servo.gain));
@@ -122,7 +122,7 @@ fn the_truth_lies_within_two_errors_at_60_to_240_pictures_a_second() {
 #[test]
 fn a_load_on_a_drum_tells_the_torque_at_a_stall() {
     let mut rng = Rng::with_seed(2);
-    let eye = Eye::of_rate(120.0);
+    let eye = AngleCamera::of_rate(120.0);
     let films = |rng: &mut Rng| {
         let free = any(rng);
         let loaded = Servo {
@@ -149,7 +149,7 @@ fn a_load_on_a_drum_tells_the_torque_at_a_stall() {
 fn a_load_that_slows_nothing_down_tells_no_torque() {
     let mut rng = Rng::with_seed(3);
     let films = [0, 1].map(|_| {
-        let path = Eye::of_rate(120.0).path(&Servo::default(), &mut rng);
+        let path = AngleCamera::of_rate(120.0).path(&Servo::default(), &mut rng);
         Turns::of(&path, JIG).expect("it is measured")
     });
     let refused = films[0].stall(&films[1], 19.6).expect_err("no torque");
@@ -168,7 +168,7 @@ fn a_servo_that_turns_the_wrong_way_has_a_negative_gain() {
         gain: -1.05,
         ..Servo::default()
     };
-    let path = Eye::of_rate(120.0).path(&servo, &mut Rng::with_seed(4));
+    let path = AngleCamera::of_rate(120.0).path(&servo, &mut Rng::with_seed(4));
     let gain = Turns::of(&path, JIG).expect("it is measured").gain;
     assert!((gain.value + 1.05).abs() < 2.0 * gain.error, "{gain:?}");
 }
@@ -179,9 +179,12 @@ fn steps_that_move_nothing_show_only_how_wide_the_dead_band_is_at_least() {
         dead_band: 4.0,
         ..Servo::default()
     };
-    let path = Eye::of_rate(60.0).path(&servo, &mut Rng::with_seed(5));
+    let path = AngleCamera::of_rate(60.0).path(&servo, &mut Rng::with_seed(5));
     let dead_band = Turns::of(&path, JIG).expect("it is measured").dead_band;
-    assert_eq!((dead_band.width, dead_band.still), (None, 3.0));
+    assert_eq!(
+        (dead_band.width, dead_band.largest_ignored_step),
+        (None, 3.0)
+    );
 }
 
 #[test]
@@ -201,7 +204,7 @@ fn a_horn_that_stands_still_or_turns_otherwise_is_named() {
     assert_eq!(trouble(&still), TurnsTrouble::NotTurned { turn: 0.0 });
     let to_and_fro = path(&mut |seconds| seconds.sin());
     assert_eq!(trouble(&to_and_fro), TurnsTrouble::NotTheSteps);
-    let whole = Eye::of_rate(60.0).path(&Servo::default(), &mut rng);
+    let whole = AngleCamera::of_rate(60.0).path(&Servo::default(), &mut rng);
     let half = trouble(&whole[..whole.len() / 2]);
     assert!(matches!(half, TurnsTrouble::TooShort { .. }), "{half}");
 }
@@ -209,10 +212,10 @@ fn a_horn_that_stands_still_or_turns_otherwise_is_named() {
 #[test]
 fn a_film_in_slow_motion_or_with_few_pictures_is_named() {
     let mut rng = Rng::with_seed(7);
-    let mut path = Eye::of_rate(240.0).path(&Servo::default(), &mut rng);
+    let mut path = AngleCamera::of_rate(240.0).path(&Servo::default(), &mut rng);
     path.iter_mut().for_each(|seen| seen.seconds *= 4.0);
     assert_eq!(trouble(&path), TurnsTrouble::AnotherPace { times: 4.0 });
-    let path = Eye::of_rate(15.0).path(&Servo::default(), &mut rng);
+    let path = AngleCamera::of_rate(15.0).path(&Servo::default(), &mut rng);
     let few = trouble(&path);
     assert!(matches!(few, TurnsTrouble::FewPictures { rate } if (rate - 15.0).abs() < 0.1));
     assert!(
@@ -228,7 +231,7 @@ fn orders_that_are_slower_than_the_servo_do_not_pass_for_its_rate() {
         slew,
         ..Servo::default()
     };
-    let path = Eye::of_rate(120.0).path(&servo, &mut Rng::with_seed(8));
+    let path = AngleCamera::of_rate(120.0).path(&servo, &mut Rng::with_seed(8));
     let refused = Turns::of(&path, Jig { slew, ..JIG }).expect_err("it follows the orders");
     assert!(matches!(refused, TurnsTrouble::Ordered { .. }), "{refused}");
 }

@@ -54,14 +54,14 @@ pub struct Walk {
 /// Deviations of a walk: of each cycle (mm, mm, rad), of the clock, and of what a user measures: of a height in
 /// mm and of a sheet in thousandths.
 #[derive(Clone, Copy, Default)]
-pub struct Varies {
+pub struct Variation {
     pub cycle: [f64; 3],
     pub clock: f64,
     pub ruler: f64,
 }
 
 impl Walk {
-    pub fn new(gait: &Gait, start: Spot, cycles: usize, varies: Varies, rng: &mut Rng) -> Self {
+    pub fn new(gait: &Gait, start: Spot, cycles: usize, varies: Variation, rng: &mut Rng) -> Self {
         let mut begins = vec![Place {
             forward: start[0],
             left: start[1],
@@ -134,7 +134,7 @@ impl Show {
         start: Spot,
         walks: &[(&Gait, usize)],
         rest: f64,
-        varies: Varies,
+        varies: Variation,
         rng: &mut Rng,
     ) -> Self {
         let mut show = Self {

@@ -71,10 +71,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
         None if args.json => {
             let report = with_spinner(|| Report::of(&robot));
             for row in &report.rows {
-                json::line(&mut out, &GaitLine::new(row))?;
+                json::write_line(&mut out, &GaitLine::new(row))?;
             }
             for round in &report.rounds {
-                json::line(&mut out, &RoutineLine::new(round))?;
+                json::write_line(&mut out, &RoutineLine::new(round))?;
             }
         }
         None => write!(out, "{}", with_spinner(|| Report::of(&robot)))?,

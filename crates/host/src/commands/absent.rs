@@ -29,7 +29,7 @@ fn is_built(feature: &str) -> bool {
 }
 
 /// Lists the commands that this build lacks, for the help; empty for a complete build.
-pub(super) fn list(commands: &[CommandEntry]) -> String {
+pub(super) fn list_absent(commands: &[CommandEntry]) -> String {
     list_in_build(commands, is_built)
 }
 
@@ -81,11 +81,11 @@ pub struct AbsentCommand {
 impl AbsentCommand {
     /// Explains why this build lacks this command.
     pub fn failure(name: &str, needs: &[&str]) -> Failure {
-        missing(name, needs, is_built)
+        missing_command_failure(name, needs, is_built)
     }
 }
 
-fn missing(name: &str, needs: &[&str], has: impl Fn(&str) -> bool) -> Failure {
+fn missing_command_failure(name: &str, needs: &[&str], has: impl Fn(&str) -> bool) -> Failure {
     let without: Vec<&str> = needs
         .iter()
         .filter(|feature| !has(feature))
@@ -117,7 +117,7 @@ fn explain_in_build(
             "there is no command `{word}`{like}; lizard --help lists them"
         ));
     };
-    missing(&known.name(), known.needs, has)
+    missing_command_failure(&known.name(), known.needs, has)
 }
 
 #[cfg(test)]

@@ -11,9 +11,9 @@ use super::absent;
 use super::known::{CommandEntry, Group};
 
 /// Returns the command with a help text that lists its subcommands in groups.
-pub(super) fn grouped(command: Command, known: &[CommandEntry]) -> Command {
+pub(super) fn with_groups(command: Command, known: &[CommandEntry]) -> Command {
     let list = list(&command, known);
-    let lacks = absent::list(known);
+    let lacks = absent::list_absent(known);
     command.help_template(format!(
         "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{list}{lacks}`lizard help COMMAND` explains one of them.\n\n{}\n{{options}}{{after-help}}",
         heading("Options")

@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use crate::Failure;
 use crate::shared::files;
-use crate::shared::spread::{PartOutput, Spreads, other_pieces};
+use crate::shared::spread::{PartOutput, Spreads, wrong_parts_failure};
 
 /// Join the parts of a long computation
 ///
@@ -33,7 +33,7 @@ pub struct MergeArgs {
 /// Fails if a part is missing, is given twice or does not belong to the others, or if the command
 /// itself fails.
 pub fn merge(args: MergeArgs) -> Result<(), Failure> {
-    let whole = MergedParts::of(shares(&args.files)?)?;
+    let whole = MergedParts::of(read_all_parts(&args.files)?)?;
     match whole.command.as_str() {
         #[cfg(feature = "paper")]
         "prove" => whole.run(crate::change::prove::run),
@@ -50,7 +50,7 @@ pub fn merge(args: MergeArgs) -> Result<(), Failure> {
 }
 
 /// Reads the parts from files, or from standard input.
-fn shares(files: &[PathBuf]) -> Result<Vec<PartOutput>, Failure> {
+fn read_all_parts(files: &[PathBuf]) -> Result<Vec<PartOutput>, Failure> {
     let mut shares = Vec::new();
     let mut read_parts = |name: &str, text: &str| {
         for (number, line) in (1..).zip(text.lines()) {
@@ -148,7 +148,8 @@ impl MergedParts {
         allow(dead_code, reason = "nothing can be spread")
     )]
     fn run<C: Spreads>(self, run: impl FnOnce(C) -> Result<(), Failure>) -> Result<(), Failure> {
-        let mut command: C = serde_json::from_value(self.options).map_err(|_| other_pieces())?;
+        let mut command: C =
+            serde_json::from_value(self.options).map_err(|_| wrong_parts_failure())?;
         command.spread().set_merged(self.robot, self.found);
         run(command)
     }

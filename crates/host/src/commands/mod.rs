@@ -195,7 +195,7 @@ struct Cli {
 /// The program's commands and options, with the commands in groups.
 pub fn program() -> clap::Command {
     let addresses = addresses(env!("CARGO_PKG_HOMEPAGE"), env!("CARGO_PKG_REPOSITORY"));
-    groups::grouped(Cli::command().after_help(addresses), KNOWN)
+    groups::with_groups(Cli::command().after_help(addresses), KNOWN)
 }
 
 /// Lists the project's addresses for the end of the help, and leaves out empty ones.

@@ -8,7 +8,7 @@ use super::console::find::{self, UsbPort};
 use super::console::port;
 use crate::Failure;
 use crate::shared::json;
-use crate::shared::plain::plain;
+use crate::shared::plain::escape_controls;
 
 /// List the USB serial ports: which chip each has, and if you may open it
 ///
@@ -39,24 +39,28 @@ struct Line {
 }
 
 impl Line {
-    fn of(port: UsbPort) -> Self {
+    fn from_port(port: UsbPort) -> Self {
         Self {
             vendor: format!("{:04x}", port.vendor),
             product: format!("{:04x}", port.product_id),
-            chip: chip([port.vendor, port.product_id]),
+            chip: chip_description([port.vendor, port.product_id]),
             may_open: port::may_open(&port.name),
             open_in: port::holder(&port.name),
-            name: port.product.map(|name| plain(&name.replace('_', " "))),
+            name: port
+                .product
+                .map(|name| escape_controls(&name.replace('_', " "))),
             port: port.name,
         }
     }
 }
 
 /// Description of a chip by its USB numbers, vendor and product; `None` if the chip is not known.
-fn chip(ids: [u16; 2]) -> Option<&'static str> {
+fn chip_description(ids: [u16; 2]) -> Option<&'static str> {
     Some(match ids {
-        [vendor, 0x0001 | 0x0043 | 0x0243] if find::ARDUINO.contains(&vendor) => "an Arduino UNO",
-        [vendor, _] if find::ARDUINO.contains(&vendor) => "an Arduino, but no UNO R3",
+        [vendor, 0x0001 | 0x0043 | 0x0243] if find::ARDUINO_VENDOR_IDS.contains(&vendor) => {
+            "an Arduino UNO"
+        }
+        [vendor, _] if find::ARDUINO_VENDOR_IDS.contains(&vendor) => "an Arduino, but no UNO R3",
         [0x1a86, 0x7523 | 0x5523] => "a CH340: a copy of a UNO or a Nano",
         [0x1a86, _] => "a chip of WCH: a copy of a UNO or a Nano",
         [0x0403, 0x6001 | 0x6015] => "an FTDI: an older Nano, or an adapter",
@@ -70,7 +74,7 @@ fn chip(ids: [u16; 2]) -> Option<&'static str> {
 /// # Errors
 /// Fails if standard output cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
-    let lines: Vec<Line> = find::usb_ports().into_iter().map(Line::of).collect();
+    let lines: Vec<Line> = find::usb_ports().into_iter().map(Line::from_port).collect();
     json::print_json_or(args.json, &lines, || text(&lines))
 }
 
@@ -111,7 +115,7 @@ mod tests {
     use super::*;
 
     fn line(vendor: u16, product_id: u16, product: Option<&str>) -> Line {
-        Line::of(UsbPort {
+        Line::from_port(UsbPort {
             name: "/dev/no-such-port".to_owned(),
             vendor,
             product_id,
@@ -135,7 +139,10 @@ mod tests {
             words[1].contains("no name (1a86:7523), a CH340"),
             "{words:?}"
         );
-        assert!(chip([0x0483, 0x5740]).is_none(), "another maker's");
+        assert!(
+            chip_description([0x0483, 0x5740]).is_none(),
+            "another maker's"
+        );
     }
 
     #[test]

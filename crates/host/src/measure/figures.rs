@@ -76,7 +76,7 @@ pub(super) fn table(keys: &[Key]) -> String {
 }
 
 /// The measured keys as lines for robot.toml.
-pub(super) fn lines(keys: &[Key]) -> String {
+pub(super) fn toml_lines(keys: &[Key]) -> String {
     let mut text = String::new();
     let mut table = "";
     for key in keys {

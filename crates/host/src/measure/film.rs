@@ -34,7 +34,7 @@ fn read(
 ) -> Result<Film, Failure> {
     let mut film = Film::default();
     if path.is_dir() {
-        for (seconds, file) in frames::of_folder(path, rate)? {
+        for (seconds, file) in frames::list_pictures(path, rate)? {
             film.add(seconds, &grey::read(&file)?).map_err(&about)?;
         }
         return Ok(film);
@@ -45,7 +45,7 @@ fn read(
             path.display()
         )));
     }
-    through_ffmpeg::each(note_input(path), rate, |seconds, picture| {
+    through_ffmpeg::for_each_picture(note_input(path), rate, |seconds, picture| {
         film.add(seconds, picture).map(|_| ()).map_err(&about)
     })?;
     Ok(film)

@@ -6,13 +6,16 @@ use std::path::{Path, PathBuf};
 use crate::Failure;
 
 /// File extensions of pictures.
-const ENDS: [&str; 3] = ["png", "jpg", "jpeg"];
+const PICTURE_EXTENSIONS: [&str; 3] = ["png", "jpg", "jpeg"];
 
 /// The pictures of a folder in the order of the numbers in their names, each with its time, s.
 ///
 /// # Errors
 /// Fails if the folder cannot be read or has no pictures, or if neither `rate` nor the names give the times.
-pub(super) fn of_folder(folder: &Path, rate: Option<f64>) -> Result<Vec<(f64, PathBuf)>, Failure> {
+pub(super) fn list_pictures(
+    folder: &Path,
+    rate: Option<f64>,
+) -> Result<Vec<(f64, PathBuf)>, Failure> {
     let cannot = |error: std::io::Error| {
         Failure::Input(format!("cannot read {}: {error}", folder.display()))
     };
@@ -22,7 +25,7 @@ pub(super) fn of_folder(folder: &Path, rate: Option<f64>) -> Result<Vec<(f64, Pa
         let end = path
             .extension()
             .map(|end| end.to_string_lossy().to_lowercase());
-        if end.is_some_and(|end| ENDS.contains(&&*end)) {
+        if end.is_some_and(|end| PICTURE_EXTENSIONS.contains(&&*end)) {
             files.push((stem(&path), path));
         }
     }
@@ -32,10 +35,10 @@ pub(super) fn of_folder(folder: &Path, rate: Option<f64>) -> Result<Vec<(f64, Pa
             folder.display()
         )));
     }
-    files.sort_by_key(|(stem, _)| in_order(stem));
+    files.sort_by_key(|(stem, _)| sort_key(stem));
     let time = |(i, (stem, path)): (usize, (String, PathBuf))| match rate {
         Some(rate) => Ok((i as f64 / rate, path)),
-        None => match seconds(&stem) {
+        None => match parse_seconds(&stem) {
             Some(seconds) => Ok((seconds, path)),
             None => Err(Failure::Input(format!(
                 "the times of the pictures are unknown: --fps 30 gives the film's frames per second, or name \
@@ -55,7 +58,7 @@ fn stem(path: &Path) -> String {
 }
 
 /// A sort key for names: their words and numbers, so that 10 comes after 9.
-fn in_order(name: &str) -> Vec<(u64, String)> {
+fn sort_key(name: &str) -> Vec<(u64, String)> {
     let mut parts: Vec<(u64, String)> = Vec::new();
     let mut was_digit = None;
     for c in name.chars() {
@@ -75,7 +78,7 @@ fn in_order(name: &str) -> Vec<(u64, String)> {
 
 /// The time at the end of a name such as `walk-1.033s` or `walk-1033ms`, s; `None` if the name does not end with a
 /// number and its unit.
-fn seconds(stem: &str) -> Option<f64> {
+fn parse_seconds(stem: &str) -> Option<f64> {
     let (number, unit) = match stem.strip_suffix("ms") {
         Some(number) => (number, 1e-3),
         None => (stem.strip_suffix('s')?, 1.0),
@@ -92,17 +95,17 @@ mod tests {
 
     #[test]
     fn a_name_contains_a_time_only_with_its_unit() {
-        assert_eq!(seconds("walk-1033ms"), Some(1.033));
-        assert_eq!(seconds("1.5s"), Some(1.5));
+        assert_eq!(parse_seconds("walk-1033ms"), Some(1.033));
+        assert_eq!(parse_seconds("1.5s"), Some(1.5));
         for none in ["frame-0001", "1.5", "s", "films", "1.2.3s"] {
-            assert_eq!(seconds(none), None, "{none}");
+            assert_eq!(parse_seconds(none), None, "{none}");
         }
     }
 
     #[test]
     fn ten_comes_after_nine() {
-        assert!(in_order("frame-9") < in_order("frame-10"));
-        assert!(in_order("0.9s") < in_order("0.10s"));
-        assert!(in_order("a2b1") < in_order("a2b3"));
+        assert!(sort_key("frame-9") < sort_key("frame-10"));
+        assert!(sort_key("0.9s") < sort_key("0.10s"));
+        assert!(sort_key("a2b1") < sort_key("a2b3"));
     }
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use lizard_identify::{Card, Found, Goodness, Identified, PARTS, Row, Verdict};
+use lizard_identify::{Card, Goodness, Identified, KeyResult, PARTS, Row, Verdict};
 use serde::Serialize;
 
 /// The result, with the field names of `--json`.
@@ -86,8 +86,8 @@ impl KeysReport {
                 chi_square,
                 chi_square_all_free,
                 freedom: identified.goodness.freedom,
-                explains: identified.goodness.explains,
-                errors_widened: identified.goodness.widened,
+                explains: identified.goodness.is_explained,
+                errors_widened: identified.goodness.error_factor,
             },
             gaits: identified.rows.iter().map(GaitLine::new).collect(),
             written: written.map(Path::to_owned),
@@ -96,7 +96,7 @@ impl KeysReport {
 }
 
 impl KeyLine {
-    fn new(found: &Found) -> Self {
+    fn new(found: &KeyResult) -> Self {
         Self {
             key: found.key.full_name(),
             unit: found.key.unit,
@@ -177,7 +177,7 @@ pub(super) fn text(identified: &Identified, written: Option<&Path>) -> String {
     text
 }
 
-fn key_line(found: &Found) -> String {
+fn key_line(found: &KeyResult) -> String {
     let digits = found.digits();
     let key = found.key;
     let name = match key.unit {
@@ -210,9 +210,9 @@ fn goodness(identified: &Identified) -> String {
         figures,
         chi_square: [before, after, free],
         freedom,
-        limit,
-        explains,
-        widened,
+        chi_square_limit: limit,
+        is_explained: explains,
+        error_factor: widened,
         worst: (row, part, errors),
     } = identified.goodness;
     let mut text = format!(

@@ -29,7 +29,7 @@ const MEASURED: &str = SERVO[0];
 /// Colour of predicted values.
 const PREDICTED: &str = GREY;
 /// Half the length of an error bar, in standard errors.
-const ERRORS: f64 = 2.0;
+const ERROR_BAR_ERRORS: f64 = 2.0;
 
 /// Draws a report as SVG.
 pub(super) fn draw(report: &Report) -> String {
@@ -99,16 +99,26 @@ fn draw_path(group: Group, gait: &GaitReport, top: f64) -> Group {
         .add(plot.curve(&predicted, PREDICTED, 2.0));
     for point in &gait.within {
         let (x, y) = (point.forward.mean, point.left.mean);
-        let [ex, ey] = [&point.forward, &point.left].map(|part| ERRORS * part.error);
+        let [ex, ey] = [&point.forward, &point.left].map(|part| ERROR_BAR_ERRORS * part.error);
         group = group
-            .add(line(plot.at(x - ex, y), plot.at(x + ex, y), MEASURED, 1.0))
-            .add(line(plot.at(x, y - ey), plot.at(x, y + ey), MEASURED, 1.0));
+            .add(line(
+                plot.page_point(x - ex, y),
+                plot.page_point(x + ex, y),
+                MEASURED,
+                1.0,
+            ))
+            .add(line(
+                plot.page_point(x, y - ey),
+                plot.page_point(x, y + ey),
+                MEASURED,
+                1.0,
+            ));
     }
     group = group.add(plot.curve(&points, MEASURED, 2.0));
-    let (begin, end) = (plot.at(0.0, 0.0), points[points.len() - 1]);
+    let (begin, end) = (plot.page_point(0.0, 0.0), points[points.len() - 1]);
     group
         .add(edged(circle(begin, 5.0, "white"), MEASURED, 2.0))
-        .add(circle(plot.at(end.0, end.1), 5.0, MEASURED))
+        .add(circle(plot.page_point(end.0, end.1), 5.0, MEASURED))
 }
 
 /// The components of the motion in a cycle as bars.
@@ -116,8 +126,8 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
     let parts = gait.parts();
     let ends = parts.iter().flat_map(|part| {
         let own = [
-            part.mean - ERRORS * part.error,
-            part.mean + ERRORS * part.error,
+            part.mean - ERROR_BAR_ERRORS * part.error,
+            part.mean + ERROR_BAR_ERRORS * part.error,
         ];
         own.into_iter().chain(part.predicted)
     });
@@ -139,27 +149,33 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
         // Each component has a slot of width 1, with the measured bar to the left of the predicted one.
         let at = 0.5 + i as f64;
         let bar = |from: f64, value: f64, colour: &str| {
-            let (left, top) = plot.at(at + from, value.max(0.0));
-            let (right, bottom) = plot.at(at + from + 0.28, value.min(0.0));
+            let (left, top) = plot.page_point(at + from, value.max(0.0));
+            let (right, bottom) = plot.page_point(at + from + 0.28, value.min(0.0));
             rectangle((left, top), (right - left, bottom - top), colour)
         };
         group = group.add(bar(0.2, part.mean, MEASURED));
         if let Some(predicted) = part.predicted {
             group = group.add(bar(0.52, predicted, PREDICTED).set("fill-opacity", 0.6));
         }
-        let [low, high] = [-ERRORS, ERRORS].map(|errors| part.mean + errors * part.error);
+        let [low, high] =
+            [-ERROR_BAR_ERRORS, ERROR_BAR_ERRORS].map(|errors| part.mean + errors * part.error);
         let x = at + 0.34;
-        group = group.add(line(plot.at(x, low), plot.at(x, high), "black", 1.5));
+        group = group.add(line(
+            plot.page_point(x, low),
+            plot.page_point(x, high),
+            "black",
+            1.5,
+        ));
         for end in [low, high] {
             group = group.add(line(
-                plot.at(x - 0.05, end),
-                plot.at(x + 0.05, end),
+                plot.page_point(x - 0.05, end),
+                plot.page_point(x + 0.05, end),
                 "black",
                 1.5,
             ));
         }
         let below = |lines: f64| {
-            let (x, y) = plot.at(at + 0.5, plot.y.0);
+            let (x, y) = plot.page_point(at + 0.5, plot.y.0);
             (x, y + 20.0 + 18.0 * lines)
         };
         group = group.add(text_middle(PARTS[i], below(0.0), 15.0)).add(text(
@@ -171,8 +187,8 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
         ));
     }
     group = group.add(line(
-        plot.at(plot.x.0, 0.0),
-        plot.at(plot.x.1, 0.0),
+        plot.page_point(plot.x.0, 0.0),
+        plot.page_point(plot.x.1, 0.0),
         "black",
         1.0,
     ));

@@ -3,7 +3,7 @@
 use std::fmt::{Display, Write as _};
 use std::path::{Path, PathBuf};
 
-use lizard_film::{Figure, Jig, Turns, Watched};
+use lizard_film::{AnalysedFilm, Figure, Jig, Turns};
 use lizard_measure::WatchedFilm;
 use lizard_robot::servo::NAMES;
 use lizard_robot::{GRAVITY, Robot, edit};
@@ -18,7 +18,7 @@ use crate::shared::{files, json};
 use crate::{Failure, RobotFile};
 
 /// N mm per kg cm.
-const N_MM: f64 = 10.0 * GRAVITY;
+const N_MM_PER_KG_CM: f64 = 10.0 * GRAVITY;
 
 /// Measure in a film how far and how fast a servo turns, for robot.toml
 ///
@@ -124,7 +124,7 @@ pub fn measure_servo(args: ServoArgs) -> Result<(), Failure> {
     };
     let setup = args.filming.setup(args.height);
     let spinner = Spinner::new("reading the pictures");
-    let film = |path: &Path| -> Result<(Watched, Turns), Failure> {
+    let film = |path: &Path| -> Result<(AnalysedFilm, Turns), Failure> {
         let WatchedFilm { name, watched } = args.filming.watch(path, setup)?;
         let turns =
             Turns::of(&watched.path, jig).map_err(|trouble| film_failure(&name, &trouble))?;
@@ -153,7 +153,7 @@ impl Report {
     fn new(
         robot: &Robot,
         args: &ServoArgs,
-        watched: &Watched,
+        watched: &AnalysedFilm,
         turns: &Turns,
         stall: Option<Figure>,
     ) -> Self {
@@ -179,7 +179,7 @@ impl Report {
         let time = inverse(60.0, turns.rate);
         of_type("s_per_60_deg", 4, time, kind.s_per_60_deg, 1.0 / supply);
         if let Some(stall) = stall {
-            let stall = scaled(stall, 1.0 / N_MM);
+            let stall = scaled(stall, 1.0 / N_MM_PER_KG_CM);
             of_type("stall_kg_cm", 2, stall, kind.stall_kg_cm, supply);
         }
         if let Some(width) = turns.dead_band.width {
@@ -217,7 +217,7 @@ impl Report {
             figures,
             rates: turns.rates.map(pair),
             sides: pair(turns.hysteresis),
-            still_us: turns.dead_band.still * us.abs(),
+            still_us: turns.dead_band.largest_ignored_step * us.abs(),
             is_spin_up_known: turns.spin_up.is_some(),
             is_dead_band_known: turns.dead_band.width.is_some(),
             turns_the_other_way: turns.gain.value < 0.0,
@@ -270,7 +270,7 @@ impl Report {
             text +=
                 "It turns the other way than robot.toml says: the sign of us_per_degree changes.\n";
         }
-        let _ = write!(text, "\n{}", figures::lines(&self.figures));
+        let _ = write!(text, "\n{}", figures::toml_lines(&self.figures));
         let volts = self.volts;
         let _ = match self.is_volts_measured {
             true => writeln!(

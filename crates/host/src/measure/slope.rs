@@ -156,7 +156,7 @@ impl Report {
                    downhill, too\n";
         }
         let table = figures::table(&self.figures);
-        let _ = write!(text, "\n{table}\n{}", figures::lines(&self.figures));
+        let _ = write!(text, "\n{table}\n{}", figures::toml_lines(&self.figures));
         if self.figures.len() == 1 {
             text += "A film with the head uphill gives friction_back_over_forward.\n";
         }

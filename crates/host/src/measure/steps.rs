@@ -15,7 +15,7 @@ const LEAD: f64 = 6.0;
 /// Slew limit for the jig, deg/s: the largest that robot.toml allows, faster than servos turn.
 const SLEW: f64 = 1000.0;
 /// Spacing of the poses that are checked along a step, deg.
-const CHECKED: f64 = 1.0;
+const CHECK_STEP_DEG: f64 = 1.0;
 
 /// Print the lines that turn a servo for `lizard measure servo`, one each second
 ///
@@ -119,7 +119,7 @@ pub(super) fn free_direction(robot: &Robot, servo: usize) -> Result<f64, Failure
     let is_free = |way: &f64| {
         orders(*way).iter().all(|order| {
             let Order { sweep, .. } = *order;
-            let steps = (sweep.abs() / CHECKED).ceil().max(1.0);
+            let steps = (sweep.abs() / CHECK_STEP_DEG).ceil().max(1.0);
             let on_the_way = (0..=steps as usize).all(|i| {
                 let angles = angles(robot, servo, sweep * i as f64 / steps);
                 robot.accepted(angles).is_some()

@@ -13,9 +13,9 @@ use lizard_film::Picture;
 use crate::Failure;
 
 /// Arguments of ffmpeg after the file's name: a grey picture for each picture of the film.
-const PICTURES: &str = "-fps_mode passthrough -f yuv4mpegpipe -pix_fmt gray -strict -1 -";
+const FFMPEG_ARGUMENTS: &str = "-fps_mode passthrough -f yuv4mpegpipe -pix_fmt gray -strict -1 -";
 /// Arguments of ffprobe before the file's name: the times of the pictures.
-const TIMES: &str =
+const FFPROBE_ARGUMENTS: &str =
     "-v error -select_streams v:0 -show_entries frame=best_effort_timestamp_time -of csv=p=0";
 /// Largest width or height of a picture, px.
 const LARGEST: usize = 10_000;
@@ -24,7 +24,7 @@ const LARGEST: usize = 10_000;
 ///
 /// # Errors
 /// Fails if ffmpeg or ffprobe is missing or cannot read the film, or if the function fails.
-pub(super) fn each(
+pub(super) fn for_each_picture(
     film: &Path,
     rate: Option<f64>,
     mut picture: impl FnMut(f64, &Picture) -> Result<(), Failure>,
@@ -42,7 +42,7 @@ pub(super) fn each(
     let mut ffmpeg = Command::new("ffmpeg")
         .args(["-v", "error", "-nostdin", "-i"])
         .arg(film)
-        .args(PICTURES.split(' '))
+        .args(FFMPEG_ARGUMENTS.split(' '))
         .stdout(Stdio::piped())
         .stderr(Stdio::null())
         .spawn()
@@ -86,7 +86,7 @@ pub(super) fn each(
 /// The times of a film's pictures, s.
 fn times(film: &Path) -> Result<Vec<f64>, Failure> {
     let output = Command::new("ffprobe")
-        .args(TIMES.split(' '))
+        .args(FFPROBE_ARGUMENTS.split(' '))
         .arg(film)
         .output()
         .map_err(|error| missing("ffprobe", &error))?;

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::Failure;
 use crate::shared::json;
-use crate::shared::number::tidy;
+use crate::shared::number::round_decimals;
 
 /// The solutions for the head and tail points that were asked for.
 #[derive(Serialize)]
@@ -117,7 +117,7 @@ fn solve_mode(robot: &Robot, end: End, point: Vector, a: InverseSolution) -> Mod
         // Behind the crank tips the type-2 margin is negative; the reason above says so.
         let stated = |check| behind && Check::TYPE2.contains(&check);
         let broken = robot.limits().end_violations(end, pose);
-        reasons.extend(broken.filter(|v| !stated(v.what)).map(|v| v.to_string()));
+        reasons.extend(broken.filter(|v| !stated(v.check)).map(|v| v.to_string()));
     }
     ModeSolution {
         left: elbow_text(a.working_mode.left),
@@ -187,7 +187,11 @@ fn text(report: &Report) -> String {
     ] {
         let Some(part) = part else { continue };
         let [x, y] = part.point;
-        page += &format!("{name} at ({:.3}, {:.3}) mm\n", tidy(x, 3), tidy(y, 3));
+        page += &format!(
+            "{name} at ({:.3}, {:.3}) mm\n",
+            round_decimals(x, 3),
+            round_decimals(y, 3)
+        );
         if let Some(reason) = &part.why {
             page += &format!("  {reason}\n\n");
             continue;
@@ -217,10 +221,10 @@ fn text(report: &Report) -> String {
                 "  {:8} {:8} {:10.3} {:10.3}  {:8} {:+7.3}    {:>7}   {verdict}\n",
                 bends[0],
                 bends[1],
-                tidy(angles[0], 3),
-                tidy(angles[1], 3),
+                round_decimals(angles[0], 3),
+                round_decimals(angles[1], 3),
                 solution.assembly_mode,
-                tidy(solution.margin, 3),
+                round_decimals(solution.margin, 3),
                 format_mm_error(solution.error_mm)
             );
         }

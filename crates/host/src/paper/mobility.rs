@@ -21,7 +21,7 @@ use crate::shared::json;
 const RANK_TOLERANCE: f64 = 1e-7;
 
 /// Links slower than this share of the fastest count as standing still.
-const STILL: f64 = 1e-3;
+const MAX_STILL_SPEED: f64 = 1e-3;
 
 /// The unit of length, mm, that makes rows in mm and in radians comparable.
 const LENGTH: f64 = 50.0;
@@ -81,8 +81,8 @@ struct Report {
 /// Fails if the output cannot be written.
 pub fn print(lizard: &Lizard, solution: &Solution, json: bool) -> Result<(), Failure> {
     let legs = ["leg LF (A1)", "leg RF (A2)", "leg RH (A3)", "leg LH (A4)"];
-    let mut all = vec![body(lizard, solution)];
-    all.extend((0..4).map(|i| leg(lizard, solution, i, legs[i])));
+    let mut all = vec![body_mechanism(lizard, solution)];
+    all.extend((0..4).map(|i| leg_mechanism(lizard, solution, i, legs[i])));
     let reports: Vec<Report> = all.iter().map(measure).collect();
     json::print_json_or(json, &reports, || text(&reports))
 }
@@ -131,7 +131,7 @@ fn text(reports: &[Report]) -> String {
 
 /// The 13 links of the body: chassis, four cranks with their side arms, four
 /// couplers, four slider halves.
-fn body(lizard: &Lizard, s: &Solution) -> Mechanism {
+fn body_mechanism(lizard: &Lizard, s: &Solution) -> Mechanism {
     const CRANK: [usize; 4] = [1, 2, 3, 4];
     let tips = s.crank_tips();
     let shafts = lizard.shafts();
@@ -178,7 +178,7 @@ fn body(lizard: &Lizard, s: &Solution) -> Mechanism {
 
 /// A leg's four-bar in a frame of its own: ground 0, crank 1, coupler 2, follower 3. The
 /// spring to the body imposes no rigid constraint, so it is not a link.
-fn leg(lizard: &Lizard, s: &Solution, servo: usize, name: &'static str) -> Mechanism {
+fn leg_mechanism(lizard: &Lizard, s: &Solution, servo: usize, name: &'static str) -> Mechanism {
     let crank = s.legs[servo].direction * lizard.leg.crank;
     let across = Vector::new(lizard.leg.ground, 0.0);
     let points = [
@@ -205,12 +205,12 @@ fn leg(lizard: &Lizard, s: &Solution, servo: usize, name: &'static str) -> Mecha
 
 /// The body's degrees of freedom at a pose, by rank.
 pub fn body_freedoms(lizard: &Lizard, solution: &Solution) -> usize {
-    freedoms(&body(lizard, solution))
+    freedoms(&body_mechanism(lizard, solution))
 }
 
 /// The front left leg's degrees of freedom at a pose, by rank.
 pub fn leg_freedoms(lizard: &Lizard, solution: &Solution) -> usize {
-    freedoms(&leg(lizard, solution, 0, "leg"))
+    freedoms(&leg_mechanism(lizard, solution, 0, "leg"))
 }
 
 /// A mechanism's degrees of freedom with unlocked servos, by rank.
@@ -237,7 +237,7 @@ fn measure(mechanism: &Mechanism) -> Report {
                     .collect();
                 let fastest = speeds.iter().copied().fold(0.0, f64::max);
                 loose.extend(mechanism.parts.iter().filter_map(|(links, what)| {
-                    let moves = |link: &usize| speeds[link - 1] > STILL * fastest;
+                    let moves = |link: &usize| speeds[link - 1] > MAX_STILL_SPEED * fastest;
                     links.iter().any(moves).then_some(*what)
                 }));
             }
@@ -289,7 +289,7 @@ fn jacobian(mechanism: &Mechanism, locked: &[usize]) -> DMatrix<f64> {
                 }
                 // Both links have the same omega, and the same velocity across the slide.
                 Kind::Prismatic(p, along) => {
-                    let n = along.left();
+                    let n = along.rotated_left();
                     add(2 * i, link, [0.0, 0.0, sign]);
                     add(
                         2 * i + 1,

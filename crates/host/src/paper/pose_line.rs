@@ -6,8 +6,8 @@ use lizard_kinematics::{Infeasible, Margins, Pose, Solution};
 use lizard_robot::{Robot, verdict};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
-use crate::paper::poses::Timed;
-use crate::shared::number::tidy;
+use crate::paper::poses::TimedPose;
+use crate::shared::number::round_decimals;
 
 /// One object of `lizard pose --json`. Fields that need a solution are null without one; `seconds` is present only
 /// if the stream has it.
@@ -129,14 +129,14 @@ pub fn heading(has_time: bool) -> String {
 }
 
 /// Formats a pose as one row of a table.
-pub fn row(robot: &Robot, timed: &Timed, solved: &Result<Solution, Infeasible>) -> String {
+pub fn row(robot: &Robot, timed: &TimedPose, solved: &Result<Solution, Infeasible>) -> String {
     let angles = <[f64; 4]>::from(timed.pose);
     let mut line = String::with_capacity(192);
     if let Some(seconds) = timed.seconds {
         let _ = write!(line, "{seconds:8.2} |");
     }
     for angle in angles {
-        let _ = write!(line, " {:8.3}", tidy(angle, 3));
+        let _ = write!(line, " {:8.3}", round_decimals(angle, 3));
     }
     let s = match solved {
         Err(infeasible) => {
@@ -153,15 +153,15 @@ pub fn row(robot: &Robot, timed: &Timed, solved: &Result<Solution, Infeasible>) 
     ] {
         line.push_str(" |");
         for value in block {
-            let _ = write!(line, " {:8.3}", tidy(value, 3));
+            let _ = write!(line, " {:8.3}", round_decimals(value, 3));
         }
     }
     let _ = write!(
         line,
         " | {:+7.2} {:+7.2} | {min:9} {:+7.4} | ",
-        tidy(s.left.s, 2),
-        tidy(s.right.s, 2),
-        tidy(value, 4),
+        round_decimals(s.left.s, 2),
+        round_decimals(s.right.s, 2),
+        round_decimals(value, 4),
     );
     match verdict::reasons(robot, s).first() {
         None => line.push_str("safe"),
@@ -173,7 +173,7 @@ pub fn row(robot: &Robot, timed: &Timed, solved: &Result<Solution, Infeasible>) 
 /// Formats a pose as a page of text.
 pub fn page(robot: &Robot, pose: &Pose, solved: &Result<Solution, Infeasible>) -> String {
     let limits = robot.limits();
-    let milli = |value: f64| tidy(value, 3);
+    let milli = |value: f64| round_decimals(value, 3);
     let [a1, a2, a3, a4] = <[f64; 4]>::from(*pose).map(milli);
     let mut page = format!(
         "servos   A1 theta1 {a1:9.3}   A2 theta4 {a2:9.3}   A3 theta8 {a3:9.3}   A4 theta5 {a4:9.3}  deg\n"
@@ -187,7 +187,7 @@ pub fn page(robot: &Robot, pose: &Pose, solved: &Result<Solution, Infeasible>) -
     };
     let (head, tail) = (s.head_point(), s.tail_point());
     let legs = s.legs.map(|leg| milli(leg.follower()));
-    let fine = |margin: f64| tidy(margin, 4);
+    let fine = |margin: f64| round_decimals(margin, 4);
     let m = &s.margins;
     let _ = write!(
         page,

@@ -48,7 +48,7 @@ const MAX_LINE_BYTES: u64 = 1024;
 
 /// A pose of the stream, with its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Timed {
+pub struct TimedPose {
     /// Time, s; `None` if the stream has no column `seconds`.
     pub seconds: Option<f64>,
     /// The servo angles.
@@ -169,7 +169,7 @@ impl<R: BufRead> Poses<R> {
     }
 
     /// Parses the current line as a pose.
-    fn parse(&self) -> Result<Timed, Failure> {
+    fn parse(&self) -> Result<TimedPose, Failure> {
         let mut angles = [0.0; 4];
         let mut seconds = None;
         let mut count = 0;
@@ -209,7 +209,7 @@ impl<R: BufRead> Poses<R> {
         if count < self.columns.len() {
             return Err(failure_at(count, "no value".to_string()));
         }
-        Ok(Timed {
+        Ok(TimedPose {
             seconds,
             pose: Pose::from(angles),
         })
@@ -217,7 +217,7 @@ impl<R: BufRead> Poses<R> {
 }
 
 impl<R: BufRead> Iterator for Poses<R> {
-    type Item = Result<Timed, Failure>;
+    type Item = Result<TimedPose, Failure>;
 
     fn next(&mut self) -> Option<Self::Item> {
         if std::mem::take(&mut self.has_pending_line) {

@@ -1,14 +1,16 @@
 //! `lizard pose --show singularities`: the matrices K and K*, the factors of det K*, and the turns of the servos to
 //! the nearest singular poses.
 
-use lizard_kinematics::{Blocks, End, FiveBar, SingularPose, Singularity, Solution, wrap};
+use lizard_kinematics::{
+    BlockDeterminants, End, FiveBar, SingularPose, Singularity, Solution, wrap,
+};
 use lizard_robot::Robot;
 use nalgebra::SMatrix;
 use serde::Serialize;
 
 use crate::Failure;
 use crate::shared::json;
-use crate::shared::number::tidy;
+use crate::shared::number::round_decimals;
 use crate::shared::pose_args::ANGLES;
 
 /// Names of the passive joints and slider travels, in the order of the columns of K*.
@@ -59,7 +61,7 @@ impl Matrix {
                 // Values of the size of rounding errors are printed as a point.
                 text += &match value.abs() < 5e-7 {
                     true => format!(" {:>9}", "."),
-                    false => format!(" {:9.2}", tidy(*value, 2)),
+                    false => format!(" {:9.2}", round_decimals(*value, 2)),
                 };
             }
         }
@@ -115,7 +117,7 @@ pub fn print(robot: &Robot, solution: &Solution, json: bool) -> Result<(), Failu
 fn report(robot: &Robot, solution: &Solution) -> Report {
     let k_star = solution.passive_matrix();
     let matrix = SMatrix::<f64, 8, 8>::from_fn(|row, column| k_star[row][column]);
-    let blocks @ Blocks {
+    let blocks @ BlockDeterminants {
         head,
         tail,
         left,
@@ -131,7 +133,7 @@ fn report(robot: &Robot, solution: &Solution) -> Report {
             Singularity::LeftArm,
             Singularity::RightArm,
         ] {
-            if let Some((distance, pose)) = nearest_of(&bars, kind, angles) {
+            if let Some((distance, pose)) = nearest_singularity(&bars, kind, angles) {
                 let mut turn = [0.0; 4];
                 turn[servos[0]] = sign * wrap(pose.theta_left - angles[0]);
                 turn[servos[1]] = sign * wrap(pose.theta_right - angles[1]);
@@ -185,7 +187,7 @@ fn report(robot: &Robot, solution: &Solution) -> Report {
 
 /// The singular crank angles of one kind that are nearest to `from`, with their distance in degrees; `None` if there
 /// are none. Scans the singularity curves over all left crank angles, then refines the step around the best one.
-pub fn nearest_of(
+pub fn nearest_singularity(
     bars: &FiveBar,
     kind: Singularity,
     from: [f64; 2],
@@ -237,20 +239,20 @@ fn text(report: &Report) -> String {
         report.k_star.text(),
         report.determinant,
         report.factored,
-        tidy(b.head, 2),
-        tidy(b.tail, 2),
-        tidy(b.left, 2),
-        tidy(b.right, 2),
+        round_decimals(b.head, 2),
+        round_decimals(b.tail, 2),
+        round_decimals(b.left, 2),
+        round_decimals(b.right, 2),
         report
             .leg_determinants
-            .map(|det| format!("{:+.1}", tidy(det, 1)))
+            .map(|det| format!("{:+.1}", round_decimals(det, 1)))
             .join(" "),
     );
     page += "nearest singularities, and how A1, A2, A3, A4 would have to turn to them\n";
     for near in &report.nearest {
         let turn = near
             .turn
-            .map(|angle| format!("{:+8.2}", tidy(angle, 2)))
+            .map(|angle| format!("{:+8.2}", round_decimals(angle, 2)))
             .join(" ");
         page += &format!("  {:7.2} deg  {turn}   {}\n", near.distance, near.what);
     }

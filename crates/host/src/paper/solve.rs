@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use crate::Failure;
 use crate::paper::pose_line::{self, PoseLine};
-use crate::paper::poses::{Poses, Timed};
+use crate::paper::poses::{Poses, TimedPose};
 
 /// Number of poses that are solved together, which bounds the memory.
 const BATCH: usize = 8192;
@@ -113,7 +113,7 @@ fn solve_all(
 }
 
 /// Solves poses and returns their lines, CSV or JSON.
-fn lines(robot: &Robot, poses: &[Timed], json: bool) -> Result<Vec<u8>, Failure> {
+fn lines(robot: &Robot, poses: &[TimedPose], json: bool) -> Result<Vec<u8>, Failure> {
     let mut text = Vec::with_capacity(poses.len() * if json { 1024 } else { 192 });
     for timed in poses {
         let solved = robot.lizard().solve(&timed.pose);

@@ -5,15 +5,15 @@ use serde::Serialize;
 
 use crate::Failure;
 use crate::shared::json;
-use crate::shared::number::tidy;
+use crate::shared::number::round_decimals;
 use crate::shared::pose_args::Quantity;
 
 /// Longest step of the finite differences for the comparison, s.
-const STEP: f64 = 2e-4;
+const MAX_STEP_S: f64 = 2e-4;
 
 /// Largest turn of a servo in a step of the finite differences, deg. With a larger turn the differences would not
 /// hold for the pose that is examined.
-const SWEEP: f64 = 0.04;
+const MAX_STEP_TURN_DEG: f64 = 0.04;
 
 #[derive(clap::Args)]
 #[command(next_help_heading = "Servos, for --show rates; all 0 unless given")]
@@ -104,10 +104,10 @@ fn text(rows: &[Row]) -> String {
         page += &format!(
             "{:9} {:10.4} {:3} {:+12.4} {:+20.4}   {verdict}\n",
             row.joint,
-            tidy(row.value, 4),
+            round_decimals(row.value, 4),
             row.unit,
-            tidy(row.rate, 4),
-            tidy(row.acceleration, 4)
+            round_decimals(row.rate, 4),
+            round_decimals(row.acceleration, 4)
         );
     }
     page
@@ -156,9 +156,9 @@ fn rows(lizard: &Lizard, solution: &Solution, drive: &Drive) -> Vec<Row> {
     let start = <[f64; 4]>::from(solution.pose);
     let largest = |all: &[f64; 4]| all.iter().fold(0.0f64, |max, one| max.max(one.abs()));
     // If the servos stand still, the quotients are infinite and do not limit the step.
-    let step = STEP
-        .min(SWEEP / largest(&drive.rate))
-        .min((SWEEP / largest(&drive.acceleration)).sqrt());
+    let step = MAX_STEP_S
+        .min(MAX_STEP_TURN_DEG / largest(&drive.rate))
+        .min((MAX_STEP_TURN_DEG / largest(&drive.acceleration)).sqrt());
     let solved_at = |steps: f64| {
         let t = steps * step;
         let angles: [f64; 4] = std::array::from_fn(|i| {

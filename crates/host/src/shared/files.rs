@@ -16,11 +16,11 @@ use std::sync::{Mutex, PoisonError};
 use crate::Failure;
 
 /// The files that this command has read.
-static READ: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+static INPUT_FILES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// Notes a file that is about to be read, so that no output replaces it.
 pub fn note_input(path: &Path) -> &Path {
-    let mut inputs = READ.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut inputs = INPUT_FILES.lock().unwrap_or_else(PoisonError::into_inner);
     inputs.push(path.to_owned());
     path
 }
@@ -47,7 +47,7 @@ pub fn read_text(path: &Path) -> Result<String, Failure> {
 /// # Errors
 /// Fails if the output would replace an input or a robot's description.
 pub fn check_replaceable(path: &Path) -> Result<(), Failure> {
-    let inputs = READ.lock().unwrap_or_else(PoisonError::into_inner);
+    let inputs = INPUT_FILES.lock().unwrap_or_else(PoisonError::into_inner);
     let is_input = |input: &PathBuf| same_file::is_same_file(input, path).unwrap_or(false);
     let reason = if inputs.iter().any(is_input) {
         "this command reads it"
@@ -94,7 +94,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
             .open(path)
             .and_then(|mut stream| stream.write_all(bytes))
     } else {
-        folders(path).and_then(|()| persist(path, bytes))
+        create_parent_folders(path).and_then(|()| persist(path, bytes))
     };
     outcome.map_err(|error| write_failure(path, &error))
 }
@@ -110,7 +110,7 @@ pub fn write_failure(path: &Path, error: &io::Error) -> Failure {
 }
 
 /// Creates the folders that contain a file.
-fn folders(path: &Path) -> io::Result<()> {
+fn create_parent_folders(path: &Path) -> io::Result<()> {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => fs::create_dir_all(folder),
         _ => Ok(()),
@@ -161,7 +161,7 @@ fn persist(path: &Path, bytes: &[u8]) -> io::Result<()> {
     #[cfg(target_os = "linux")]
     if let Some(mut file) = create_nameless(folder) {
         fill(&mut file)?;
-        let link = |name: &Path| name_it(&file, name);
+        let link = |name: &Path| link_to_name(&file, name);
         tempfile::Builder::new()
             .make_in(folder, link)?
             .persist(path)?;
@@ -198,7 +198,7 @@ fn create_nameless(folder: &Path) -> Option<File> {
 
 /// Gives a name to a file of [`create_nameless`].
 #[cfg(target_os = "linux")]
-fn name_it(file: &File, name: &Path) -> io::Result<()> {
+fn link_to_name(file: &File, name: &Path) -> io::Result<()> {
     use rustix::fs::{AtFlags, CWD, linkat};
     use std::os::fd::AsRawFd;
     let open = format!("/proc/self/fd/{}", file.as_raw_fd());

@@ -15,7 +15,7 @@ pub fn print_json_or(
 ) -> Result<(), crate::Failure> {
     let mut out = io::stdout().lock();
     match json {
-        true => line(&mut out, value)?,
+        true => write_line(&mut out, value)?,
         false => out.write_all(text().as_bytes())?,
     }
     Ok(())
@@ -25,7 +25,7 @@ pub fn print_json_or(
 ///
 /// # Errors
 /// Fails if writing fails.
-pub fn line(out: &mut impl Write, value: &impl Serialize) -> io::Result<()> {
+pub fn write_line(out: &mut impl Write, value: &impl Serialize) -> io::Result<()> {
     serde_json::to_writer(&mut *out, value)?;
     writeln!(out)
 }

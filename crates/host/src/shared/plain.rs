@@ -5,7 +5,7 @@
 //! spelled out.
 
 /// The text with every control character as an escape of Rust, such as `\u{1b}`.
-pub fn plain(text: &str) -> String {
+pub fn escape_controls(text: &str) -> String {
     let mut result = String::with_capacity(text.len());
     for c in text.chars() {
         if c.is_control() {
@@ -19,7 +19,10 @@ pub fn plain(text: &str) -> String {
 
 /// The text with every control character escaped, except line feeds; the middle of a very long line is omitted.
 pub fn readable_lines(text: &str) -> String {
-    let lines: Vec<String> = text.split('\n').map(|line| shorten(&plain(line))).collect();
+    let lines: Vec<String> = text
+        .split('\n')
+        .map(|line| shorten(&escape_controls(line)))
+        .collect();
     lines.join("\n")
 }
 
@@ -51,10 +54,10 @@ mod tests {
     #[test]
     fn control_characters_are_spelled_out_and_all_others_stay() {
         assert_eq!(
-            plain("a\u{1b}]0;x\u{7}\u{9b}1m\t\r\n"),
+            escape_controls("a\u{1b}]0;x\u{7}\u{9b}1m\t\r\n"),
             "a\\u{1b}]0;x\\u{7}\\u{9b}1m\\t\\r\\n"
         );
-        assert_eq!(plain("Ä 5 µs \\"), "Ä 5 µs \\");
+        assert_eq!(escape_controls("Ä 5 µs \\"), "Ä 5 µs \\");
         assert_eq!(readable_lines("a\nb\u{1b}\n"), "a\nb\\u{1b}\n");
     }
 }

@@ -54,7 +54,7 @@ impl<'a> Axis<'a> {
 
 impl Plot {
     /// The position of a point on the page.
-    pub fn at(&self, x: f64, y: f64) -> (f64, f64) {
+    pub fn page_point(&self, x: f64, y: f64) -> (f64, f64) {
         (
             self.corner.0 + self.size.0 * (x - self.x.0) / (self.x.1 - self.x.0),
             self.corner.1 + self.size.1 * (self.y.1 - y) / (self.y.1 - self.y.0),
@@ -74,11 +74,11 @@ impl Plot {
     /// Adds a grid in the background.
     pub fn draw_grid(&self, mut group: Group, x: &Axis, y: &Axis) -> Group {
         for value in ticks(self.x, x.step) {
-            let px = self.at(value, 0.0).0;
+            let px = self.page_point(value, 0.0).0;
             group = group.add(line((px, self.corner.1), (px, self.end().1), GRID, 1.0));
         }
         for value in ticks(self.y, y.step) {
-            let py = self.at(0.0, value).1;
+            let py = self.page_point(0.0, value).1;
             group = group.add(line((self.corner.0, py), (self.end().0, py), GRID, 1.0));
         }
         group
@@ -89,17 +89,17 @@ impl Plot {
         let (right, bottom) = self.end();
         group = group.add(edged(rectangle(self.corner, self.size, "none"), DARK, 1.0));
         for value in ticks(self.x, x.step) {
-            let px = self.at(value, 0.0).0;
+            let px = self.page_point(value, 0.0).0;
             group = group
                 .add(line((px, bottom), (px, bottom + 6.0), DARK, 1.0))
                 .add(text_middle(
-                    &number(value, x.step),
+                    &format_tick(value, x.step),
                     (px, bottom + 23.0),
                     15.0,
                 ));
         }
         for value in ticks(self.y, y.step) {
-            let py = self.at(0.0, value).1;
+            let py = self.page_point(0.0, value).1;
             group = group
                 .add(line(
                     (self.corner.0 - 6.0, py),
@@ -108,7 +108,7 @@ impl Plot {
                     1.0,
                 ))
                 .add(text_end(
-                    &number(value, y.step),
+                    &format_tick(value, y.step),
                     (self.corner.0 - 10.0, py + 5.0),
                     15.0,
                 ));
@@ -151,8 +151,8 @@ impl Plot {
                     continue;
                 }
                 if let Some(fill) = fill {
-                    let (left, top) = self.at(left_of(from), y + height);
-                    let (right, bottom) = self.at(left_of(column), y);
+                    let (left, top) = self.page_point(left_of(from), y + height);
+                    let (right, bottom) = self.page_point(left_of(column), y);
                     let (wide, high) = (right - left, bottom - top);
                     let _ = write!(
                         outlines.entry(fill).or_default(),
@@ -171,7 +171,7 @@ impl Plot {
 
     /// A line through points.
     pub fn curve(&self, points: &[(f64, f64)], colour: &str, width: f64) -> Polyline {
-        let points: Vec<_> = points.iter().map(|&(x, y)| self.at(x, y)).collect();
+        let points: Vec<_> = points.iter().map(|&(x, y)| self.page_point(x, y)).collect();
         curve(&points, colour, width)
     }
 }
@@ -184,7 +184,7 @@ fn ticks(range: (f64, f64), step: f64) -> impl Iterator<Item = f64> {
 }
 
 /// A tick's number, with as many digits as the step needs.
-fn number(value: f64, step: f64) -> String {
+fn format_tick(value: f64, step: f64) -> String {
     let digits = (0..4)
         .find(|&digits| (step * 10f64.powi(digits)).fract().abs() < 1e-9)
         .unwrap_or(4);

@@ -8,7 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 ///
 /// # Panics
 /// Panics if the template is not well formed.
-pub fn bar(length: usize, template: &str) -> ProgressBar {
+pub fn progress_bar(length: usize, template: &str) -> ProgressBar {
     let style = ProgressStyle::with_template(template).expect("the template is well formed");
     ProgressBar::new(length as u64).with_style(style)
 }
@@ -19,7 +19,7 @@ pub struct Spinner(ProgressBar);
 impl Spinner {
     /// Starts to show the time, after these words.
     pub fn new(words: &'static str) -> Self {
-        let spinner = bar(0, "{spinner} {msg}, {elapsed}").with_message(words);
+        let spinner = progress_bar(0, "{spinner} {msg}, {elapsed}").with_message(words);
         spinner.enable_steady_tick(Duration::from_millis(100));
         Self(spinner)
     }

@@ -11,7 +11,7 @@ use crate::shared::files::{self, note_input};
 pub(crate) const BUILT_IN: &str = include_str!("../../../../robot.toml");
 
 /// The robots of robots/, by their names.
-const NAMED: [(&str, &str); 5] = [
+const BUILT_IN_ROBOTS: [(&str, &str); 5] = [
     ("grain", include_str!("../../../../robots/grain.toml")),
     ("large", include_str!("../../../../robots/large.toml")),
     (
@@ -23,14 +23,14 @@ const NAMED: [(&str, &str); 5] = [
 ];
 
 /// The names of the robots inside the program.
-pub(crate) fn names() -> [&'static str; NAMED.len()] {
-    NAMED.map(|(name, _)| name)
+pub(crate) fn names() -> [&'static str; BUILT_IN_ROBOTS.len()] {
+    BUILT_IN_ROBOTS.map(|(name, _)| name)
 }
 
 /// A robot of robots/, for tests.
 #[cfg(test)]
 pub fn named(name: &str) -> Robot {
-    let file = NAMED.iter().find(|(known, _)| *known == name);
+    let file = BUILT_IN_ROBOTS.iter().find(|(known, _)| *known == name);
     Robot::parse(file.expect(name).1).expect("robots/ holds valid robots")
 }
 
@@ -64,15 +64,15 @@ impl RobotFile {
         if let Some(text) = &self.text {
             return Ok(text.clone());
         }
-        let path = match self.found()? {
-            Found::File(path) => path,
-            Found::BuiltIn(text) => return Ok(text.to_owned()),
+        let path = match self.find_source()? {
+            RobotSource::File(path) => path,
+            RobotSource::BuiltIn(text) => return Ok(text.to_owned()),
         };
         files::read_text(&path)
     }
 
     /// The robot file at a path. With `None`, [`RobotFile::load`] searches for robot.toml.
-    pub fn at(path: Option<PathBuf>) -> Self {
+    pub fn from_path(path: Option<PathBuf>) -> Self {
         Self { path, text: None }
     }
 
@@ -84,9 +84,9 @@ impl RobotFile {
         if let Some(text) = &self.text {
             return Ok(Robot::parse(text)?);
         }
-        Ok(match self.found()? {
-            Found::File(path) => Robot::load(note_input(&path))?,
-            Found::BuiltIn(text) => Robot::parse(text)?,
+        Ok(match self.find_source()? {
+            RobotSource::File(path) => Robot::load(note_input(&path))?,
+            RobotSource::BuiltIn(text) => Robot::parse(text)?,
         })
     }
 
@@ -100,10 +100,10 @@ impl RobotFile {
     /// # Errors
     /// Fails if the current folder was removed.
     pub fn name(&self) -> Result<String, Failure> {
-        Ok(match (self.found()?, &self.path) {
-            (Found::File(path), _) => path.display().to_string(),
-            (Found::BuiltIn(_), Some(name)) => format!("the robot {}", name.display()),
-            (Found::BuiltIn(_), None) => {
+        Ok(match (self.find_source()?, &self.path) {
+            (RobotSource::File(path), _) => path.display().to_string(),
+            (RobotSource::BuiltIn(_), Some(name)) => format!("the robot {}", name.display()),
+            (RobotSource::BuiltIn(_), None) => {
                 "the robot.toml that this program was built with".to_owned()
             }
         })
@@ -111,23 +111,25 @@ impl RobotFile {
 
     /// Finds the robot's source. A file takes precedence over a built-in robot of the same name. Without `--robot`,
     /// looks for robot.toml in the current folder and the folders above it.
-    fn found(&self) -> Result<Found, Failure> {
+    fn find_source(&self) -> Result<RobotSource, Failure> {
         if let Some(path) = &self.path {
-            let named = NAMED.iter().find(|(name, _)| path.as_os_str() == *name);
+            let named = BUILT_IN_ROBOTS
+                .iter()
+                .find(|(name, _)| path.as_os_str() == *name);
             return Ok(match named {
-                Some((_, text)) if !path.exists() => Found::BuiltIn(text),
-                _ => Found::File(path.clone()),
+                Some((_, text)) if !path.exists() => RobotSource::BuiltIn(text),
+                _ => RobotSource::File(path.clone()),
             });
         }
-        let here = here()?;
+        let here = current_folder()?;
         let mut above = here.ancestors().map(|folder| folder.join("robot.toml"));
         let file = above.find(|path| path.is_file());
-        Ok(file.map_or(Found::BuiltIn(BUILT_IN), Found::File))
+        Ok(file.map_or(RobotSource::BuiltIn(BUILT_IN), RobotSource::File))
     }
 }
 
 /// The source of a robot.
-enum Found {
+enum RobotSource {
     /// A file at this path.
     File(PathBuf),
     /// A robot inside the program, by its text.
@@ -138,7 +140,7 @@ enum Found {
 ///
 /// # Errors
 /// Fails if the folder was removed, or may not be read.
-pub(crate) fn here() -> Result<PathBuf, Failure> {
+pub(crate) fn current_folder() -> Result<PathBuf, Failure> {
     std::env::current_dir()
         .map_err(|error| Failure::Impossible(format!("this folder has no path: {error}")))
 }
@@ -156,14 +158,14 @@ mod tests {
             .map(|path| path.file_stem().expect("a name").to_owned())
             .collect();
         names.sort();
-        assert_eq!(names, NAMED.map(|(name, _)| name));
-        for (name, text) in NAMED {
-            let file = RobotFile::at(Some(name.into()));
+        assert_eq!(names, BUILT_IN_ROBOTS.map(|(name, _)| name));
+        for (name, text) in BUILT_IN_ROBOTS {
+            let file = RobotFile::from_path(Some(name.into()));
             assert!(file.load().is_ok(), "{name}");
             assert_eq!(file.text().expect("a text"), text);
             assert_eq!(file.name().expect("a name"), format!("the robot {name}"));
         }
-        let missing = RobotFile::at(Some("papre".into())).load();
+        let missing = RobotFile::from_path(Some("papre".into())).load();
         assert!(missing.is_err_and(|error| error.to_string().contains("papre")));
     }
 }

@@ -99,7 +99,7 @@ impl Part {
             pieces,
             found: values,
         };
-        Ok(json::line(&mut io::stdout().lock(), &share)?)
+        Ok(json::write_line(&mut io::stdout().lock(), &share)?)
     }
 }
 
@@ -164,11 +164,11 @@ impl Spread {
         };
         let values = merged.iter().zip(0..);
         if merged.len() != count || values.clone().any(|((index, _), at)| *index != at) {
-            return Err(other_pieces());
+            return Err(wrong_parts_failure());
         }
         let deserialize = |((_, value), _): ((&usize, &Value), usize)| T::deserialize(value);
         let pieces: Result<Vec<T>, _> = values.map(deserialize).collect();
-        pieces.map(Some).map_err(|_| other_pieces())
+        pieces.map(Some).map_err(|_| wrong_parts_failure())
     }
 
     /// Returns all pieces in order: computed by `compute_piece` from their indices, or read from parts in
@@ -176,7 +176,7 @@ impl Spread {
     ///
     /// # Errors
     /// Fails if the output cannot be written, or the parts belong to another computation.
-    pub fn all<T: Serialize + DeserializeOwned>(
+    pub fn all_pieces<T: Serialize + DeserializeOwned>(
         &self,
         command: &impl Spreads,
         count: usize,
@@ -204,7 +204,7 @@ impl Spread {
 }
 
 /// The failure for parts that belong to another computation.
-pub(crate) fn other_pieces() -> Failure {
+pub(crate) fn wrong_parts_failure() -> Failure {
     Failure::Input("the parts do not hold what this computation finds".to_owned())
 }
 

@@ -9,7 +9,7 @@ use simulated_uno::{CYCLES_PER_MS, Call, Fidelity, Image, Pin, SerialByte, State
 use crate::Failure;
 use crate::shared::firmware;
 use crate::simulate::sim::frame::{
-    FRAME, Frame, first_cycle, frames, latest_start, next_start, servo_pins,
+    FRAME, Frame, first_cycle, group_frames, latest_start, next_start, servo_pins,
 };
 use crate::simulate::sim::lines::{Line, LineReader};
 use crate::simulate::sim::supplies;
@@ -85,7 +85,7 @@ pub struct SimulatedBoard {
     bytes: Vec<SerialByte>,
     lines: Vec<Line>,
     /// Number of lines that [`SimulatedBoard::next_line`] has returned.
-    returned: usize,
+    returned_lines: usize,
     /// The cycle at which a frame starts, from which the starts of the other frames are counted; `None` while
     /// no pulse is known.
     anchor: Option<u64>,
@@ -128,7 +128,7 @@ impl SimulatedBoard {
             reader: LineReader::default(),
             bytes: Vec::new(),
             lines: Vec::new(),
-            returned: 0,
+            returned_lines: 0,
             anchor: None,
         }
     }
@@ -152,7 +152,7 @@ impl SimulatedBoard {
     /// # Errors
     /// See [`SimulatedBoard::say`].
     pub fn ask(&mut self, line: &str) -> Result<(Vec<String>, String), BoardError> {
-        self.returned = self.lines().len();
+        self.returned_lines = self.lines().len();
         self.send(line);
         let mut notes = Vec::new();
         while let Some(answer) = self.next_line(TIMEOUT_MS) {
@@ -177,10 +177,10 @@ impl SimulatedBoard {
         let sending = self.uno.unsent() as u64 * BYTE_CYCLES;
         let end = self.uno.cycle() + sending + ms * CYCLES_PER_MS;
         loop {
-            let next = self.returned;
+            let next = self.returned_lines;
             if let Some(line) = self.lines().get(next) {
                 let text = line.text.clone();
-                self.returned += 1;
+                self.returned_lines += 1;
                 return Some(text);
             }
             if self.uno.cycle() >= end || *self.uno.state() != State::Alive {
@@ -213,7 +213,7 @@ impl SimulatedBoard {
     ///
     /// # Errors
     /// Fails as [`SimulatedBoard::say`] does, or if `status` has no such number.
-    pub fn count(&mut self, key: &str) -> Result<u64, BoardError> {
+    pub fn read_counter(&mut self, key: &str) -> Result<u64, BoardError> {
         let status = self.say("status")?;
         let value = status.split(' ').find_map(|pair| {
             let (name, value) = pair.split_once('=')?;
@@ -233,14 +233,14 @@ impl SimulatedBoard {
 
     /// Runs the board until a cycle.
     fn run_until(&mut self, cycle: u64) -> Result<(), BoardError> {
-        let resets = self.uno.resets();
+        let resets = self.uno.watchdog_resets();
         match self.uno.run_until_cycle(cycle) {
             State::Alive => {}
             State::Halted => return Err(BoardError::Halted),
             State::Crashed { message, .. } => return Err(BoardError::Crashed(message.clone())),
             State::Off => return Err(BoardError::Off),
         }
-        if self.uno.resets() == resets {
+        if self.uno.watchdog_resets() == resets {
             Ok(())
         } else {
             Err(BoardError::Reset)
@@ -291,6 +291,6 @@ impl SimulatedBoard {
         self.run_until(first_cycle(start))?;
         self.uno.take_edges();
         self.run_until(first_cycle(start + count * FRAME))?;
-        Ok(frames(&self.uno.edges(), self.pins, start, count))
+        Ok(group_frames(&self.uno.edges(), self.pins, start, count))
     }
 }

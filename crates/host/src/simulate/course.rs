@@ -23,7 +23,7 @@ pub fn course(
     elf: Option<&Path>,
 ) -> Result<Course, Failure> {
     let gait = twin::moving_gait(robot, gait)?;
-    let image = firmware::of_robot(elf, file, robot)?.image;
+    let image = firmware::select_firmware(elf, file, robot)?.image;
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     let script = twin::walk_script(robot, &[gait.name()]);
     let recording = twin::record(&mut uno, robot, &script)?;
@@ -33,7 +33,7 @@ pub fn course(
     Ok(Course {
         gait: gait.name().to_owned(),
         frames: targets(robot, log),
-        begin: end - gait.period(),
+        measure_start: end - gait.period(),
         period: gait.period(),
         count: 1,
     })

@@ -36,7 +36,7 @@ pub fn with_patrol(text: &str, last_steps: &[&str]) -> Result<Robot, Error> {
         // If no pin is free, an occupied one is taken, so that the last `parse` reports the error.
         text = with(free.unwrap_or(&PINS[0]));
     }
-    let gaits: Vec<String> = tour::moving(&robot)
+    let gaits: Vec<String> = tour::moving_gaits(&robot)
         .iter()
         .map(|name| name.replace('-', " "))
         .collect();

@@ -26,7 +26,7 @@ fn robot_of_image() -> String {
 fn robot_outside_image() -> (String, String) {
     let named = ["unequal", "large"].map(|name| {
         let path = robot(name);
-        let report = run(&["gaits", "--robot", &path]).success();
+        let report = run(&["gaits", "--robot", &path]).expect_success();
         (path, robot_in(&report))
     });
     let image = robot_of_image();
@@ -49,7 +49,7 @@ fn every_command_that_runs_an_image_refuses_an_elf_of_another_robot() {
     ] {
         let with = ["--elf", &elf, "--robot", &robot];
         assert_eq!(
-            run(&[words, &with].concat()).refusal(),
+            run(&[words, &with].concat()).expect_refusal(),
             format!(
                 "lizard: {elf} has the robot {image} in it, and not {robot}, which is {wanted}; \
                  without --elf, the firmware inside this program runs with any robot"

@@ -18,7 +18,7 @@ fn without_a_board_and_without_a_firmware_built_it_gets_as_far_as_the_port() {
     let empty = tempfile::tempdir().expect("a folder");
     for words in [&[][..], &["--only-robot"], &["--robot", "large"]] {
         let arguments = [&["flash", "/dev/no-such-port"], words].concat();
-        let message = run_in(empty.path(), &arguments, "").refusal();
+        let message = run_in(empty.path(), &arguments, "").expect_refusal();
         assert!(message.contains("no-such-port"), "{message}");
     }
 }
@@ -40,14 +40,14 @@ fn an_image_of_any_robot_is_made_in_an_empty_folder() {
             start.elapsed()
         );
         assert_eq!(made.err, "");
-        let output = made.success();
+        let output = made.expect_success();
         assert!(
             output.starts_with("x.hex: ") && output.contains(&format!("robot {name} ")),
             "{output}"
         );
         let text = fs::read_to_string(folder.path().join("x.hex")).expect("it is written");
         let piped = [&["flash", "image", "--robot", name], options].concat();
-        let piped = run_in(folder.path(), &piped, "").success();
+        let piped = run_in(folder.path(), &piped, "").expect_success();
         assert!(piped == text, "the same goes to a pipe");
         // Read by the simulator's loader, not by the code that wrote it.
         let image = simulated_uno::Image::parse_hex(&text).expect("it is Intel HEX");
@@ -63,7 +63,7 @@ fn an_image_of_any_robot_is_made_in_an_empty_folder() {
 fn a_script_reads_what_an_image_has() {
     let folder = tempfile::tempdir().expect("a folder");
     let arguments = ["flash", "image", "--robot", "large", "--output", "x.hex"];
-    let made = run_in(folder.path(), &[&arguments[..], &["--json"]].concat(), "").success();
+    let made = run_in(folder.path(), &[&arguments[..], &["--json"]].concat(), "").expect_success();
     let made: serde_json::Value = serde_json::from_str(&made).expect("it is JSON");
     let robot = Robot::load(robot("large")).expect("it is right");
     let hash = robot.firmware().hash();
@@ -77,7 +77,7 @@ fn a_script_reads_what_an_image_has() {
             "robot_space": 0x7e00 - 0x6e00,
         })
     );
-    let piped = run_in(folder.path(), &["flash", "image", "--json"], "").refusal();
+    let piped = run_in(folder.path(), &["flash", "image", "--json"], "").expect_refusal();
     assert!(piped.contains("--output"), "{piped}");
 }
 
@@ -86,7 +86,7 @@ fn a_robot_that_is_wrong_gives_no_image() {
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(folder.path().join("x.toml"), "[servo]\n").expect("a file");
     let arguments = ["flash", "image", "--robot", "x.toml", "--output", "x.hex"];
-    let message = run_in(folder.path(), &arguments, "").refusal();
+    let message = run_in(folder.path(), &arguments, "").expect_refusal();
     assert!(message.contains("x.toml"), "{message}");
     assert!(!folder.path().join("x.hex").exists());
 }
@@ -97,7 +97,7 @@ fn a_port_that_is_not_there_is_named() {
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(folder.path().join("a.hex"), HEX).expect("a file");
     let arguments = ["flash", "/dev/no-such-port", "--image", "a.hex"];
-    let message = run_in(folder.path(), &arguments, "").refusal();
+    let message = run_in(folder.path(), &arguments, "").expect_refusal();
     let start = "lizard: there is no /dev/no-such-port; USB serial ports of this machine: ";
     assert!(message.starts_with(start), "{message}");
 }
@@ -107,14 +107,14 @@ fn a_file_that_is_not_an_image_is_refused_before_any_port_is_opened() {
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(folder.path().join("half.hex"), &HEX[..60]).expect("a file");
     let arguments = ["flash", "/dev/no-such-port", "--image", "half.hex"];
-    let message = run_in(folder.path(), &arguments, "").refusal();
+    let message = run_in(folder.path(), &arguments, "").expect_refusal();
     assert!(
         message.starts_with("lizard: half.hex: line 2 is not Intel HEX"),
         "{message}"
     );
     for other in [&["--robot", "robot.toml"][..], &["--only-robot"]] {
         let both = [&arguments[..], other].concat();
-        let message = run_in(folder.path(), &both, "").refusal();
+        let message = run_in(folder.path(), &both, "").expect_refusal();
         assert!(message.contains("cannot be used with"), "{message}");
     }
 }

@@ -5,12 +5,12 @@
 use crate::program::{lizard, paper};
 
 fn complaint(arguments: &str, input: &str) -> String {
-    lizard(arguments, input).refusal()
+    lizard(arguments, input).expect_refusal()
 }
 
 /// Computes all parts and returns their output, the last part first.
 fn parts(arguments: &str, of: usize) -> String {
-    let part = |number| lizard(&format!("{arguments} --part {number}/{of}"), "").success();
+    let part = |number| lizard(&format!("{arguments} --part {number}/{of}"), "").expect_success();
     (1..=of).rev().map(part).collect()
 }
 
@@ -24,9 +24,9 @@ fn parts_together_print_byte_for_byte_what_one_process_prints() {
         ("design --search --step 0.1 --top 3 --json", 5),
     ] {
         let words = paper(words);
-        let whole = lizard(&words, "").success();
+        let whole = lizard(&words, "").expect_success();
         assert!(whole.len() > 100, "{words}: {whole}");
-        let merged = lizard("merge", parts(&words, of)).success();
+        let merged = lizard("merge", parts(&words, of)).expect_success();
         assert_eq!(merged, whole, "{words}");
     }
 }
@@ -38,12 +38,12 @@ fn a_merge_refuses_parts_that_are_not_one_complete_computation() {
     let (last, first) = parts.split_once('\n').expect("two lines");
     assert_eq!(complaint("merge", last), "lizard: part 1/2 is missing");
     let other = "design --search --step 0.1 --robot robots/unequal.toml --part 1/2";
-    let other = lizard(other, "").success();
+    let other = lizard(other, "").expect_success();
     assert_eq!(
         complaint("merge", &format!("{last}\n{other}")),
         "lizard: part 1/2 has a different robot from another part"
     );
-    let step = lizard(&paper("design --search --step 0.2 --part 1/2"), "").success();
+    let step = lizard(&paper("design --search --step 0.2 --part 1/2"), "").expect_success();
     assert!(complaint("merge", &format!("{last}\n{step}")).contains("different options"));
     // A job that was killed leaves half a line.
     let half = &first[..first.len() / 2];

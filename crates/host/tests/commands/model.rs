@@ -16,7 +16,7 @@ fn fresh_path(name: &str) -> PathBuf {
 fn the_file_holds_a_robot_with_four_servos_and_four_feet() {
     let file = fresh_path("robot.xml");
     let path = file.display().to_string();
-    run(&["model", &path]).success();
+    run(&["model", &path]).expect_success();
     let text = fs::read_to_string(&file).expect("a file");
     for part in [
         "<position name=\"A1\"",
@@ -33,7 +33,7 @@ fn the_file_holds_a_robot_with_four_servos_and_four_feet() {
 #[test]
 #[cfg(unix)]
 fn a_stream_gets_the_file_and_nothing_else() {
-    let text = run(&["model", "/dev/stdout", "--long-foot", "LH=-0.5"]).success();
+    let text = run(&["model", "/dev/stdout", "--long-foot", "LH=-0.5"]).expect_success();
     assert!(text.starts_with("<mujoco ") && text.ends_with("</mujoco>\n"));
 }
 
@@ -41,7 +41,7 @@ fn a_stream_gets_the_file_and_nothing_else() {
 fn wrong_input_is_refused_with_a_message_and_no_file_is_written() {
     let file = fresh_path("wrong.xml");
     let path = file.display().to_string();
-    let refusal = |words: &[&str]| run(&[&["model", &path], words].concat()).refusal();
+    let refusal = |words: &[&str]| run(&[&["model", &path], words].concat()).expect_refusal();
     let wolk = refusal(&["--drive", "wolk"]);
     assert!(wolk.contains("robot.toml has no gait `wolk`"), "{wolk}");
     assert!(wolk.ends_with("did you mean `walk`?"), "{wolk}");
@@ -59,7 +59,7 @@ fn a_urdf_or_sdf_comes_with_the_meshes_that_it_names() {
     let folder = tempfile::tempdir().expect("a folder");
     for ending in ["urdf", "sdf"] {
         let file = folder.path().join(format!("new/my.{ending}"));
-        let printed = run(&["model", &file.display().to_string()]).success();
+        let printed = run(&["model", &file.display().to_string()]).expect_success();
         assert!(printed.contains("my-meshes"), "{printed}");
         let text = fs::read_to_string(&file).expect("a file");
         let names = text.split("my-meshes/").skip(1);
@@ -75,7 +75,7 @@ fn a_urdf_or_sdf_comes_with_the_meshes_that_it_names() {
     }
     let file = folder.path().join("my.urdf");
     let address = ["--mesh-address", "package://my_robot/meshes/"];
-    run(&[&["model", &file.display().to_string()], &address[..]].concat()).success();
+    run(&[&["model", &file.display().to_string()], &address[..]].concat()).expect_success();
     let text = fs::read_to_string(&file).expect("a file");
     assert!(text.contains("\"package://my_robot/meshes/link_A1-printed.stl\""));
 }
@@ -97,7 +97,7 @@ fn options_that_a_format_lacks_are_refused_and_nothing_is_written() {
         ),
     ] {
         let file = folder.path().join(name).display().to_string();
-        let printed = run(&[&["model", &file], &words[..]].concat()).refusal();
+        let printed = run(&[&["model", &file], &words[..]].concat()).expect_refusal();
         assert!(printed.contains(refusal), "{printed}");
     }
     let left = folder.path().read_dir().expect("a folder");

@@ -72,7 +72,7 @@ fn no_command_writes_over_its_input_or_over_a_robot() {
 fn a_new_robot_is_one_that_walks_and_replaces_no_file() {
     let folder = tempfile::tempdir().expect("a folder");
     let here = folder.path();
-    let printed = lizard(here, "new my.toml").success();
+    let printed = lizard(here, "new my.toml").expect_success();
     assert!(
         printed.contains("lizard gaits --robot my.toml"),
         "{printed}"
@@ -83,9 +83,9 @@ fn a_new_robot_is_one_that_walks_and_replaces_no_file() {
         text.contains("\n[gait.walk]\n") && text.contains("# "),
         "{text}"
     );
-    lizard(here, "gaits --robot my.toml").success();
+    lizard(here, "gaits --robot my.toml").expect_success();
     fs::write(&file, "mine").expect("it is written");
-    let refusal = lizard(here, "new my.toml").refusal();
+    let refusal = lizard(here, "new my.toml").expect_refusal();
     assert_eq!(
         refusal,
         "lizard: my.toml already exists and is left as it is; name a new file"
@@ -99,7 +99,7 @@ fn a_new_robot_is_one_that_walks_and_replaces_no_file() {
 fn an_image_makes_the_folders_that_it_needs() {
     let folder = tempfile::tempdir().expect("a folder");
     let line = "flash image --robot large --output new/folder/x.hex";
-    lizard(folder.path(), line).success();
+    lizard(folder.path(), line).expect_success();
     assert!(folder.path().join("new/folder/x.hex").is_file());
 }
 

@@ -27,7 +27,7 @@ fn write_changed_paper(name: &str, change: impl Fn(String) -> String) -> String 
 #[test]
 fn a_folder_holds_everything_to_build_the_robot() {
     let folder = fresh_path("parts-all");
-    make(&folder, &["--robot", &robot("paper")]).success();
+    make(&folder, &["--robot", &robot("paper")]).expect_success();
     for file in [
         "step/plate.step",
         "stl/link-A1-A3.stl",
@@ -96,7 +96,8 @@ fn a_wrong_weight_is_reported_with_the_right_one() {
     let light = write_changed_paper("light.toml", |text| {
         text.replace("mass = 435.0", "mass = 280.0")
     });
-    let summary = |robot: &str| make(&fresh_path("parts-light"), &["--robot", robot]).success();
+    let summary =
+        |robot: &str| make(&fresh_path("parts-light"), &["--robot", robot]).expect_success();
     let light = summary(&light);
     assert!(
         light.contains("The parts weigh 435 g") && light.ends_with("\n[body]\nmass = 435.0\n"),
@@ -111,7 +112,7 @@ fn struts_may_have_springs() {
     let robot = write_changed_paper("strut.toml", |text| {
         text + "\n[leg.drive]\nkind = \"strut\"\nforce = 4.0\nrate = 0.4\n"
     });
-    make(&folder, &["--robot", &robot]).success();
+    make(&folder, &["--robot", &robot]).expect_success();
     for file in [
         "stl/rigid-strut.stl",
         "cut/rigid-strut.dxf",

@@ -16,19 +16,19 @@ pub struct Outcome {
 
 impl Outcome {
     /// Checks that the run succeeded, and returns its standard output.
-    pub fn success(self) -> String {
+    pub fn expect_success(self) -> String {
         assert_eq!(self.code, Some(0), "{}", self.err);
         self.out
     }
 
     /// Checks that the run succeeded, and parses its standard output as one JSON value.
     pub fn json(self) -> serde_json::Value {
-        serde_json::from_str(&self.success()).expect("JSON")
+        serde_json::from_str(&self.expect_success()).expect("JSON")
     }
 
     /// Checks that the run refused its input and wrote nothing to standard output, and returns its
     /// message.
-    pub fn refusal(self) -> String {
+    pub fn expect_refusal(self) -> String {
         assert_eq!(self.code, Some(2), "{}", self.err);
         assert_eq!(self.out, "", "nothing is half written");
         self.err.trim().to_owned()
@@ -83,7 +83,7 @@ impl RobotFile {
     }
 
     /// Adds the option for this robot file to a command line.
-    pub fn of(&self, args: &str) -> String {
+    pub fn add_to(&self, args: &str) -> String {
         format!("{args} --robot {}", self.0.display())
     }
 }

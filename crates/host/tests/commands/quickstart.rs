@@ -1,27 +1,27 @@
 //! docs/quickstart.md shows the firmware's real answers to the lines that it tells the reader to
 //! type.
 
-use lizard_core::virtual_board::Running;
+use lizard_core::virtual_board::RunningRobot;
 use lizard_robot::Robot;
 
 use crate::program::read;
 
 /// The paper's robot on a 5 V supply, with an EEPROM that was never written.
 struct Board {
-    running: Running,
+    running: RunningRobot,
 }
 
 impl Board {
     fn new() -> Self {
         let robot = Robot::parse(&read("robots/paper.toml")).expect("robots/paper.toml");
         Self {
-            running: Running::power_on(*robot.firmware()),
+            running: RunningRobot::power_on(*robot.firmware()),
         }
     }
 
     /// Runs the board for a number of frames and returns the lines that it prints.
     fn run(&mut self, frames: u32) -> Vec<String> {
-        self.running.run(frames)
+        self.running.run_frames(frames)
     }
 
     /// Sends a line and returns the lines that the board prints in the next 100 frames, in which

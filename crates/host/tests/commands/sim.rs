@@ -3,7 +3,7 @@
 use crate::program::{read, robot, run, scratch};
 
 fn complaint(arguments: &[&str]) -> String {
-    run(arguments).refusal()
+    run(arguments).expect_refusal()
 }
 
 #[test]
@@ -129,6 +129,6 @@ fn times_out_of_range_are_refused() {
 
 #[test]
 fn the_picture_in_docs_is_up_to_date() {
-    let drawn = run(&["draw", "--robot", &robot("paper")]).success();
+    let drawn = run(&["draw", "--robot", &robot("paper")]).expect_success();
     assert!(read("docs/lizard.svg") == drawn, "run `make docs`");
 }

@@ -6,7 +6,7 @@ use crate::program::{RobotFile, lizard, paper, read};
 
 /// Runs a command and returns the printed JSON object in which `key` is `name`.
 fn object(line: &str, key: &str, name: &str) -> Value {
-    let printed = lizard(line, "").success();
+    let printed = lizard(line, "").expect_success();
     let mut objects = printed
         .lines()
         .map(|line| serde_json::from_str::<Value>(line).expect("JSON"));
@@ -20,9 +20,9 @@ fn a_round_of_a_routine_leads_as_far_as_lizard_gaits_says_of_the_same_servos() {
     let robot = RobotFile::with("routines", &[("[gait.stand]", ROUTINES)]);
     let twin = |routine: &str, servo: &str| {
         let line = format!("twin --json --gait {routine} --servo {servo}");
-        object(&robot.of(&line), "command", &format!("{routine} 1"))
+        object(&robot.add_to(&line), "command", &format!("{routine} 1"))
     };
-    let tour = object(&robot.of("gaits --json"), "routine", "tour");
+    let tour = object(&robot.add_to("gaits --json"), "routine", "tour");
     let part = |path: &Value, name: &str| path[name].as_f64().expect(name);
     for (servo, key) in [("own", "by_servos"), ("ideal", "predicted")] {
         let walked = twin("tour", servo);
@@ -35,7 +35,7 @@ fn a_round_of_a_routine_leads_as_far_as_lizard_gaits_says_of_the_same_servos() {
     let lost = part(&tour["predicted"], "turn") - part(&tour["by_servos"], "turn");
     assert!(lost > 1.0, "servos with a mass to turn lose some: {lost}");
     // Two feet pull against the other two. Then the distance is not determined, so neither command may state one.
-    let gaze = object(&robot.of("gaits --json"), "routine", "gaze");
+    let gaze = object(&robot.add_to("gaits --json"), "routine", "gaze");
     for path in [&twin("gaze", "own")["way"], &gaze["by_servos"]] {
         assert!(path["forward"].is_null() && path["turn"].is_f64(), "{path}");
     }
@@ -59,7 +59,7 @@ fn the_image_runs_at_90_mm_a_second_on_pads_with_a_grain_and_still_turns() {
         let friction_key = format!("friction = {friction}");
         let changes = [("[servo.A1]", &*servo), ("# friction = 0.7", &friction_key)];
         let robot = RobotFile::changed("robots/grain.toml", "grain", &changes);
-        let printed = lizard(&robot.of("twin --json"), "").success();
+        let printed = lizard(&robot.add_to("twin --json"), "").expect_success();
         let figure = |gait: &str, pointer: &str| {
             let mut lines = printed.lines().flat_map(serde_json::from_str::<Value>);
             let line = lines.find(|line| line["command"] == gait);
@@ -91,6 +91,6 @@ fn an_unknown_gait_is_refused_with_a_list_of_the_gaits() {
         ("stand", "lizard: the gait `stand` moves no servo"),
     ] {
         let line = paper(&format!("twin --gait {gait}"));
-        assert_eq!(lizard(&line, "").refusal(), words);
+        assert_eq!(lizard(&line, "").expect_refusal(), words);
     }
 }

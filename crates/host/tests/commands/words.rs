@@ -8,11 +8,11 @@ use lizard_time_limit::LIMIT;
 use crate::program::{robot, root, run, scratch};
 
 fn output(arguments: &[&str]) -> String {
-    run(arguments).success()
+    run(arguments).expect_success()
 }
 
 fn complaint(arguments: &[&str]) -> String {
-    run(arguments).refusal()
+    run(arguments).expect_refusal()
 }
 
 /// The first words of the lines under a heading of `lizard --help`.

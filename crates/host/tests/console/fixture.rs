@@ -63,7 +63,7 @@ pub struct Uno {
 }
 
 impl Uno {
-    pub fn at(folder: &Path) -> Self {
+    pub fn start(folder: &Path) -> Self {
         Self::with(folder, &[])
     }
 
@@ -134,14 +134,14 @@ pub fn wide_terminal() -> (File, OwnedFd) {
 }
 
 /// A program at a terminal of its own, 100 columns wide.
-pub struct AtTerminal {
+pub struct TerminalSession {
     pub child: Child,
     pub keys: File,
     seen: Receiver<Vec<u8>>,
     pub text: String,
 }
 
-impl AtTerminal {
+impl TerminalSession {
     pub fn start(mut command: Command) -> Self {
         let (ours, theirs) = wide_terminal();
         let end = || Stdio::from(theirs.try_clone().expect("another of it"));

@@ -12,7 +12,7 @@ use std::process::{Child, Stdio};
 
 use lizard_time_limit::LIMIT;
 
-use fixture::{AtTerminal, Device, Uno, lizard, moving_gait, run, wide_terminal};
+use fixture::{Device, TerminalSession, Uno, lizard, moving_gait, run, wide_terminal};
 
 #[test]
 fn a_script_on_standard_input_gets_the_banner_and_its_answers_in_order() {
@@ -48,7 +48,7 @@ fn a_script_on_standard_input_gets_the_banner_and_its_answers_in_order() {
 fn a_calibration_goes_to_a_file_and_back_and_a_refused_one_changes_nothing() {
     let folder = tempfile::tempdir().expect("a folder");
     let here = folder.path();
-    let uno = Uno::at(here);
+    let uno = Uno::start(here);
     let port = uno.port();
     let (_, error, code) = run(here, &["calibrate", "backup", "a.toml", &port], "");
     assert_eq!(code, Some(0), "{error}");
@@ -84,7 +84,7 @@ fn a_calibration_goes_to_a_file_and_back_and_a_refused_one_changes_nothing() {
 fn info_says_what_a_board_has_and_leaves_its_settings() {
     let folder = tempfile::tempdir().expect("a folder");
     let here = folder.path();
-    let uno = Uno::at(here);
+    let uno = Uno::start(here);
     let port = uno.port();
     let saved = run(here, &["console", &port], "trim 3 -4.25\nboot rest\nsave\n");
     assert_eq!(saved.2, Some(0), "{}", saved.1);
@@ -106,8 +106,8 @@ fn info_says_what_a_board_has_and_leaves_its_settings() {
 #[test]
 fn a_person_at_a_terminal_types_edits_and_outlives_an_unplugged_board() {
     let folder = tempfile::tempdir().expect("a folder");
-    let uno = Uno::at(folder.path());
-    let mut person = AtTerminal::start(lizard(folder.path(), &["console", &uno.port()]));
+    let uno = Uno::start(folder.path());
+    let mut person = TerminalSession::start(lizard(folder.path(), &["console", &uno.port()]));
     person.wait_for("# lizard ");
     person.wait_for("no fault");
     // Ctrl-A moves to the start of the line, where the forgotten letter is added.
@@ -120,7 +120,7 @@ fn a_person_at_a_terminal_types_edits_and_outlives_an_unplugged_board() {
     drop(uno);
     person.wait_for("the port is gone: the board was unplugged, or its cable is loose");
     person.wait_for("waiting for the board");
-    let _uno = Uno::at(folder.path());
+    let _uno = Uno::start(folder.path());
     person.wait_for("is back: # lizard ");
     person.press("stand\r");
     person.wait_for("ok stand");
@@ -134,7 +134,7 @@ fn a_person_at_a_terminal_types_edits_and_outlives_an_unplugged_board() {
 fn calibrate_shows_a_step_for_each_key_and_leaves_the_robot_as_it_was() {
     let folder = tempfile::tempdir().expect("a folder");
     let arguments = ["calibrate", "--sim"];
-    let mut person = AtTerminal::start(lizard(folder.path(), &arguments));
+    let mut person = TerminalSession::start(lizard(folder.path(), &arguments));
     person.wait_for("before you begin");
     person.press("\r");
     person.wait_for("fit the horns");
@@ -201,8 +201,8 @@ fn a_recorded_session_is_drawn_and_summarized() {
 #[test]
 fn a_port_that_another_program_has_open_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");
-    let uno = Uno::at(folder.path());
-    let mut other = AtTerminal::start(lizard(folder.path(), &["console", &uno.port()]));
+    let uno = Uno::start(folder.path());
+    let mut other = TerminalSession::start(lizard(folder.path(), &["console", &uno.port()]));
     other.wait_for("# lizard ");
     let (_, error, code) = run(
         folder.path(),
@@ -338,7 +338,7 @@ fn a_link_of_the_simulated_board_replaces_no_other_and_goes_with_the_board() {
 #[test]
 fn a_picture_is_not_poured_over_a_terminal() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut person = AtTerminal::start(lizard(folder.path(), &["draw", "--wiring"]));
+    let mut person = TerminalSession::start(lizard(folder.path(), &["draw", "--wiring"]));
     person.wait_for("lizard: the picture is SVG, which a terminal does not show; --output");
     assert!(!person.text.contains("<svg"));
     assert_eq!(person.exit_code(), Some(2));
@@ -362,13 +362,13 @@ fn is_cooked(terminal: &File) -> bool {
 #[test]
 fn control_z_restores_the_terminal_and_fg_continues() {
     let folder = tempfile::tempdir().expect("a folder");
-    let uno = Uno::at(folder.path());
+    let uno = Uno::start(folder.path());
     let port = uno.port();
     for (command, first, keys, then) in [
         ("console", "no fault", "stop\r", "ok stop"),
         ("calibrate", "before you begin", "\r", "fit the horns"),
     ] {
-        let mut person = AtTerminal::start(lizard(folder.path(), &[command, &port]));
+        let mut person = TerminalSession::start(lizard(folder.path(), &[command, &port]));
         person.wait_for(first);
         assert!(!is_cooked(&person.keys), "{command}");
         person.press("\x1a");
@@ -387,7 +387,7 @@ fn control_z_restores_the_terminal_and_fg_continues() {
 #[test]
 fn a_program_whose_terminal_is_closed_ends() {
     let folder = tempfile::tempdir().expect("a folder");
-    let uno = Uno::at(folder.path());
+    let uno = Uno::start(folder.path());
     let port = uno.port();
     for (command, first) in [("console", "no fault"), ("calibrate", "before you begin")] {
         let (mut ours, theirs) = wide_terminal();
@@ -418,7 +418,7 @@ fn a_program_whose_terminal_is_closed_ends() {
 fn a_simulated_robot_that_has_ended_is_not_reported_as_continuing() {
     let folder = tempfile::tempdir().expect("a folder");
     let arguments = ["console", "--sim"];
-    let mut person = AtTerminal::start(lizard(folder.path(), &arguments));
+    let mut person = TerminalSession::start(lizard(folder.path(), &arguments));
     person.wait_for("no fault");
     let gait = moving_gait(folder.path());
     person.press(&format!("{gait}\r"));

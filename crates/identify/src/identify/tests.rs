@@ -71,8 +71,8 @@ fn changed_keys_are_within_two_errors_in_95_of_100_and_right_ones_stay() {
     for seed in 0..ROBOTS {
         let mut rng = Rng::with_seed(seed);
         let mut truth = start();
-        let is_changed: [bool; COUNT] = std::array::from_fn(|_| rng.bool());
-        for i in (0..COUNT).filter(|&i| is_changed[i]) {
+        let is_changed: [bool; KEY_COUNT] = std::array::from_fn(|_| rng.bool());
+        for i in (0..KEY_COUNT).filter(|&i| is_changed[i]) {
             truth[i] += KEYS[i].prior_error()
                 * if i == PLAY {
                     rng.f64()
@@ -83,8 +83,8 @@ fn changed_keys_are_within_two_errors_in_95_of_100_and_right_ones_stay() {
         let card = card(&mut rng);
         let ways = measured(&truth, card, &mut rng);
         let found = solve(&ways, start(), &model).expect("a fit");
-        explained += f64::from(u8::from(found.goodness.explains));
-        for i in 0..COUNT {
+        explained += f64::from(u8::from(found.goodness.is_explained));
+        for i in 0..KEY_COUNT {
             let key = &found.keys[i];
             assert!(key.verdict != Verdict::Undetermined, "{seed} {key:?}");
             if is_changed[i] {
@@ -144,7 +144,7 @@ fn a_key_without_influence_stays_and_is_said_to_be_untold() {
         way.mean = [seen.forward, seen.left, seen.turn];
     }
     let found = solve(&ways, start(), &blind).expect("a fit");
-    let mut wanted = vec![Verdict::Unchanged; COUNT];
+    let mut wanted = vec![Verdict::Unchanged; KEY_COUNT];
     (wanted[0], wanted[5]) = (Verdict::Moved, Verdict::Undetermined);
     assert_eq!(verdicts(&found), wanted);
     assert_eq!(found.keys[5].after, found.keys[5].before);
@@ -182,12 +182,12 @@ fn a_way_that_no_key_explains_is_named_and_widens_the_errors() {
     let mut rng = Rng::with_seed(2);
     let mut ways = measured(&start(), Card::default(), &mut rng);
     let good = solve(&ways, start(), &model).expect("a fit");
-    assert!(good.goodness.explains && good.goodness.widened == 1.0);
+    assert!(good.goodness.is_explained && good.goodness.error_factor == 1.0);
     ways[3].mean[0] += 4.0;
     let bad = solve(&ways, start(), &model).expect("a fit");
     let Goodness {
-        explains,
-        widened,
+        is_explained: explains,
+        error_factor: widened,
         worst,
         ..
     } = bad.goodness;

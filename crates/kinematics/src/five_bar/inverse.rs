@@ -101,8 +101,8 @@ impl FiveBar {
         let to_right = point - self.right_shaft();
         Ok(Arms {
             bars: *self,
-            to_left,
-            to_right,
+            from_left_shaft: to_left,
+            from_right_shaft: to_right,
             left: crank_directions(to_left, self.crank_left, self.coupler_left, true)?,
             right: crank_directions(to_right, self.crank_right, self.coupler_right, false)?,
         })
@@ -113,9 +113,9 @@ impl FiveBar {
 struct Arms {
     bars: FiveBar,
     /// Vector from the left shaft to the point, mm.
-    to_left: Vector,
+    from_left_shaft: Vector,
     /// Vector from the right shaft to the point, mm.
-    to_right: Vector,
+    from_right_shaft: Vector,
     /// Directions of the left crank, length one, bent counter-clockwise and clockwise from the line
     /// to the point.
     left: [Vector; 2],
@@ -137,8 +137,8 @@ impl Arms {
             Elbow::Outward => self.right[1],
             Elbow::Inward => self.right[0],
         };
-        let from_left = self.to_left - left * self.bars.crank_left;
-        let from_right = self.to_right - right * self.bars.crank_right;
+        let from_left = self.from_left_shaft - left * self.bars.crank_left;
+        let from_right = self.from_right_shaft - right * self.bars.crank_right;
         let mode = if from_left.cross(from_right) >= 0.0 {
             AssemblyMode::Ahead
         } else {
@@ -182,7 +182,10 @@ fn crank_directions(
         crank * (1.0 / crank.length())
     });
     // If the products overflow or vanish, no direction of length one is left.
-    if bent.iter().all(|crank| (crank.square() - 1.0).abs() < 1e-9) {
+    if bent
+        .iter()
+        .all(|crank| (crank.length_squared() - 1.0).abs() < 1e-9)
+    {
         Ok(bent)
     } else {
         Err(Fault::NotFinite)
@@ -191,5 +194,5 @@ fn crank_directions(
 
 /// `vector` turned by the angle of `frame` and scaled by its length.
 fn rotate(vector: Vector, frame: Vector) -> Vector {
-    frame * vector.x + frame.left() * vector.y
+    frame * vector.x + frame.rotated_left() * vector.y
 }

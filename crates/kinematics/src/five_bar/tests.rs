@@ -39,7 +39,7 @@ proptest! {
                 let tolerance = 1e-9 / pose.type2.max(1e-9);
                 prop_assert!((pose.end_point.x - x).hypot(pose.end_point.y - y) < tolerance);
             }
-            (Err(Fault::Apart { .. } | Fault::Nested { .. }), None) => {}
+            (Err(Fault::TooFarApart { .. } | Fault::TooClose { .. }), None) => {}
             (ours, theirs) => prop_assert!(false, "{ours:?} against {theirs:?}"),
         }
     }
@@ -154,7 +154,7 @@ fn the_solver_works_where_the_papers_a_vanishes() {
             let Ok(pose) = HEAD.forward(theta1, theta4) else {
                 continue;
             };
-            smallest = smallest.min((pose.gap.square() - 100.0 * pose.gap.x).abs());
+            smallest = smallest.min((pose.gap.length_squared() - 100.0 * pose.gap.x).abs());
             let (theta2, theta3) = (pose.theta_left_coupler(), pose.theta_right_coupler());
             let gap = loop_gap(&HEAD, [theta1, theta2, theta3, theta4]);
             assert!(gap[0].hypot(gap[1]) < 1e-12);

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use lizard_kinematics::{Check, End, Limits, Lizard, Side, Vector};
 use proptest::prelude::*;
 
-use crate::reference::{any_lizard, any_pose, any_solved, cases, cis, meeting};
+use crate::reference::{any_lizard, any_pose, any_solved, cases, circle_intersection, cis};
 
 fn sine_between(a: Vector, b: Vector) -> f64 {
     (a.x * b.y - a.y * b.x) / (a.x.hypot(a.y) * b.x.hypot(b.y))
@@ -25,8 +25,8 @@ fn truth(robot: &Lizard, [t1, t4, t8, t5]: [f64; 4]) -> Option<BTreeMap<&'static
     let (p1, p4) = (a1 + cis(t1) * l.l1, a2 + cis(t4) * l.l4);
     let (p8, p5) = (a3 + cis(t8) * l.l9, a4 + cis(t5) * l.l6);
     // End points: left of the line from p1 to p4, and right of the line from p5 to p8.
-    let head = meeting(p1, l.l2, p4, l.l3)?;
-    let tail = meeting(p8, l.l8, p5, l.l7)?;
+    let head = circle_intersection(p1, l.l2, p4, l.l3)?;
+    let tail = circle_intersection(p8, l.l8, p5, l.l7)?;
     // Slider lengths.
     let left = a1 + cis(t1 + 90.0) * l.l14 - (a4 + cis(t5 - 90.0) * l.l11);
     let right = a2 + cis(t4 - 90.0) * l.l19 - (a3 + cis(t8 + 90.0) * l.l16);
@@ -123,12 +123,12 @@ proptest! {
                 expected.push((what, value, max));
             }
         }
-        let found: Vec<_> = limits.violations(&s).map(|v| (v.what, v.value, v.limit)).collect();
-        prop_assert_eq!(limits.allow(&s), found.is_empty());
+        let found: Vec<_> = limits.violations(&s).map(|v| (v.check, v.value, v.limit)).collect();
+        prop_assert_eq!(limits.is_safe(&s), found.is_empty());
         prop_assert_eq!(&found, &expected);
         // Each end alone finds its own violations.
         let of_end = |end: End| limits.end_violations(end, s.end(end));
-        let of_ends = End::ALL.into_iter().flat_map(of_end).map(|v| v.what.name());
+        let of_ends = End::ALL.into_iter().flat_map(of_end).map(|v| v.check.name());
         let of_all = expected.iter().map(|(what, ..)| what);
         let of_all = of_all.filter(|what| !Check::STROKE.contains(what)).map(|what| what.name());
         prop_assert_eq!(BTreeSet::from_iter(of_ends), BTreeSet::from_iter(of_all));
@@ -144,19 +144,19 @@ proptest! {
         ];
         for (checks, min) in of_kinds {
             for &what in checks {
-                prop_assert_eq!(limits.broken(what, min), None);
-                let broken = limits.broken(what, min.next_down()).unwrap();
-                prop_assert_eq!((broken.what, broken.limit), (what, min));
+                prop_assert_eq!(limits.violation_of(what, min), None);
+                let broken = limits.violation_of(what, min.next_down()).unwrap();
+                prop_assert_eq!((broken.check, broken.limit), (what, min));
             }
         }
         for what in Check::STROKE {
-            prop_assert_eq!(limits.broken(what, limits.stroke_max), None);
-            let broken = limits.broken(what, limits.stroke_max.next_up()).unwrap();
+            prop_assert_eq!(limits.violation_of(what, limits.stroke_max), None);
+            let broken = limits.violation_of(what, limits.stroke_max.next_up()).unwrap();
             prop_assert_eq!(broken.limit, limits.stroke_max);
         }
         for what in Check::UNCROSSED {
-            prop_assert!(limits.broken(what, 0.0).is_some());
-            prop_assert_eq!(limits.broken(what, f64::MIN_POSITIVE), None);
+            prop_assert!(limits.violation_of(what, 0.0).is_some());
+            prop_assert_eq!(limits.violation_of(what, f64::MIN_POSITIVE), None);
         }
     }
 

@@ -34,8 +34,8 @@ fn any_bars() -> impl Strategy<Value = FiveBar> {
 
 fn finite(pose: &FiveBarPose) -> bool {
     let vectors = [
-        pose.left,
-        pose.right,
+        pose.left_crank,
+        pose.right_crank,
         pose.left_tip,
         pose.right_tip,
         pose.left_coupler,

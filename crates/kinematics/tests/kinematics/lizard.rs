@@ -31,7 +31,7 @@ fn at_the_neutral_pose_the_sliders_are_at_nominal_and_the_head_at_57_840() {
     assert!((solution.tail_point() - Vector::new(0.0, -125.340)).length() < 1e-3);
     assert!((solution.margins.type2[0] - 0.98791).abs() < 1e-5);
     assert!((solution.left.phi() - 90.0).abs() < 1e-9);
-    assert!(LIMITS.allow(&solution));
+    assert!(LIMITS.is_safe(&solution));
 }
 
 proptest! {
@@ -97,7 +97,7 @@ fn head_and_tail_angles_lead_back_to_the_points() {
     let solution = robot.solve(&[a1, a2, a3, a4].into()).unwrap();
     assert!((solution.head_point() - Vector::new(8.0, 119.5)).length() < 1e-9);
     assert!((solution.tail_point() - Vector::new(-5.0, -127.5)).length() < 1e-9);
-    assert!(LIMITS.allow(&solution));
+    assert!(LIMITS.is_safe(&solution));
 }
 
 #[test]

@@ -72,7 +72,7 @@ pub fn end_point(bars: &FiveBar, theta_left: f64, theta_right: f64) -> Option<[f
     let (half, l1, l4) = (bars.base / 2.0, bars.crank_left, bars.crank_right);
     let left = Vector::new(l1 * a.cos() - half, l1 * a.sin());
     let right = Vector::new(l4 * b.cos() + half, l4 * b.sin());
-    let point = meeting(left, bars.coupler_left, right, bars.coupler_right)?;
+    let point = circle_intersection(left, bars.coupler_left, right, bars.coupler_right)?;
     Some([point.x, point.y])
 }
 
@@ -124,7 +124,7 @@ pub fn cis(degrees: f64) -> Vector {
 /// The joint between a link of length `r` that is pivoted at `a` and a link of length `s` that is pivoted at
 /// `b`, to the left of the line from `a` to `b`, by the law of cosines; `None` if the links cannot reach each
 /// other.
-pub fn meeting(a: Vector, r: f64, b: Vector, s: f64) -> Option<Vector> {
+pub fn circle_intersection(a: Vector, r: f64, b: Vector, s: f64) -> Option<Vector> {
     let d = (b.x - a.x).hypot(b.y - a.y);
     let cosine = (r * r + d * d - s * s) / (2.0 * r * d);
     if cosine.is_nan() || cosine.abs() > 1.0 {

@@ -124,7 +124,9 @@ fn largest_by_distance_field(bars: &FiveBar) -> (f64, f64) {
     let mut largest = 0.0_f64;
     for (i, column) in inside.iter().enumerate() {
         for j in (0..CELLS).filter(|&j| column[j]) {
-            let squares = rim.iter().map(|&outside| (point(i, j) - outside).square());
+            let squares = rim
+                .iter()
+                .map(|&outside| (point(i, j) - outside).length_squared());
             largest = largest.max(squares.fold(f64::INFINITY, f64::min));
         }
     }

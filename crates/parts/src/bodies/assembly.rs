@@ -7,7 +7,7 @@ use crate::bodies::builder::Builder;
 use crate::bodies::joints::Cranks;
 use crate::bodies::layout::Layout;
 use crate::bodies::{chassis, ends, legs, links, sliders, struts};
-use crate::layers::body::{Body, Mount, at_end};
+use crate::layers::body::{Body, Mount, end_and_hand};
 use crate::layers::placement::Placement;
 use crate::layers::stack::Stack;
 
@@ -79,7 +79,9 @@ impl Assembly {
 
     /// True if two bodies may touch: they move together, or they touch by design.
     pub fn may_touch(&self, a: &Body, b: &Body) -> bool {
-        a.mount == b.mount || a.meets.contains(&b.name) || b.meets.contains(&a.name)
+        a.mount == b.mount
+            || a.allowed_contacts.contains(&b.name)
+            || b.allowed_contacts.contains(&a.name)
     }
 
     /// The placement of a mount's frame at a pose at which no leg lags behind its servo.
@@ -91,35 +93,35 @@ impl Assembly {
     pub(crate) fn place_on<T: Real>(&self, mount: Mount, joints: &Cranks<T>) -> Placement<T> {
         let vector = |v: Vector| Vector::new(T::of(v.x), T::of(v.y));
         let turned = |servo: usize, at: Vector| Placement {
-            at: vector(at),
-            turn: joints.cranks[servo],
+            origin: vector(at),
+            x_axis: joints.cranks[servo],
         };
         let link = |servo: usize| turned(servo, self.layout.shafts[servo]);
         let legs = &self.layout.legs;
         match mount {
             Mount::Chassis => Placement {
-                at: vector(Placement::CHASSIS.at),
-                turn: vector(Placement::CHASSIS.turn),
+                origin: vector(Placement::CHASSIS.origin),
+                x_axis: vector(Placement::CHASSIS.x_axis),
             },
             Mount::Link(servo) => link(servo),
-            Mount::Crank(servo) => turned(servo, legs[servo].driven),
-            Mount::Follower(servo) => turned(servo, legs[servo].idle),
+            Mount::Crank(servo) => turned(servo, legs[servo].crank_pivot),
+            Mount::Follower(servo) => turned(servo, legs[servo].follower_pivot),
             Mount::Foot(servo) => Placement {
-                at: turned(servo, legs[servo].driven).map(legs[servo].joint),
-                turn: vector(legs[servo].along),
+                origin: turned(servo, legs[servo].crank_pivot).map(legs[servo].joint),
+                x_axis: vector(legs[servo].coupler_direction),
             },
             Mount::Strut(servo) => Placement {
-                at: link(servo).map(legs[servo].anchor),
-                turn: vector(legs[servo].strut),
+                origin: link(servo).map(legs[servo].anchor),
+                x_axis: vector(legs[servo].strut),
             },
             Mount::Coupler(servo) => {
-                let (end, hand) = at_end(servo);
+                let (end, hand) = end_and_hand(servo);
                 let bars = joints.end(end);
                 let tip = [bars.left_tip, bars.right_tip][hand];
                 let along = [bars.left_coupler, bars.right_coupler][hand];
                 Placement {
-                    at: self.robot.lizard().to_chassis(end, tip),
-                    turn: end.mirror(along),
+                    origin: self.robot.lizard().to_chassis(end, tip),
+                    x_axis: end.mirror(along),
                 }
             }
             Mount::Sleeve(side) | Mount::Rod(side) => {
@@ -130,8 +132,8 @@ impl Assembly {
                     _ => slider.rear_tip,
                 };
                 Placement {
-                    at: rear + tip,
-                    turn: slider.span.scaled(T::of(1.0) / slider.d),
+                    origin: rear + tip,
+                    x_axis: slider.span.scaled(T::of(1.0) / slider.d),
                 }
             }
         }

@@ -8,7 +8,7 @@ use crate::bodies::layout::Layout;
 use crate::bodies::names;
 use crate::layers::body::{Body, Kind, Mount, Prism};
 use crate::layers::shape::Shape;
-use crate::layers::stack::{HEX, PLAY, Span, Stack, screw_length};
+use crate::layers::stack::{HEX_HEAD_HEIGHT, PLAY, Span, Stack, screw_length};
 
 /// The direction from a screw's head to its tip.
 #[derive(Clone, Copy, PartialEq)]
@@ -42,16 +42,16 @@ pub struct Bolt<'a> {
     pub mount: Mount,
     pub at: Vector,
     /// Height of the face under the screw's head, mm.
-    pub head: f64,
+    pub head_z: f64,
     pub direction: Direction,
     /// Height of the face that the nut bears on, mm.
-    pub nut: f64,
+    pub nut_z: f64,
     /// Length below the head, mm; `None` for the length that the nut needs.
     pub length: Option<f64>,
     /// Names of the bodies that the screw passes through.
     pub meets: &'a [&'a str],
     /// True for a hexagonal head, which is sunk into the part under it.
-    pub hex: bool,
+    pub is_hex: bool,
 }
 
 impl<'a> Bolt<'a> {
@@ -62,12 +62,12 @@ impl<'a> Bolt<'a> {
             name,
             mount,
             at,
-            head,
+            head_z: head,
             direction,
-            nut: 0.0,
+            nut_z: 0.0,
             length: None,
             meets: &[],
-            hex: false,
+            is_hex: false,
         }
     }
 }
@@ -103,13 +103,13 @@ impl<'a> Builder<'a> {
     }
 
     /// True if the struts have a slot and a spring, false if they are rigid.
-    pub fn slotted(&self) -> bool {
+    pub fn has_slotted_struts(&self) -> bool {
         self.robot.drive().strut().is_some()
     }
 
     /// The name of a leg's strut.
-    pub fn strut(&self, leg: &str) -> String {
-        names::strut(self.slotted(), leg)
+    pub fn strut_name(&self, leg: &str) -> String {
+        names::strut(self.has_slotted_struts(), leg)
     }
 
     /// A hole in which a screw can turn.
@@ -136,7 +136,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Adds a body.
-    pub fn body(
+    pub fn add_body(
         &mut self,
         name: impl Into<String>,
         kind: Kind,
@@ -148,86 +148,100 @@ impl<'a> Builder<'a> {
             kind,
             mount,
             prisms: prisms.into(),
-            meets: Vec::new(),
+            allowed_contacts: Vec::new(),
         });
     }
 
     /// Adds a printed body.
-    pub fn printed(
+    pub fn add_printed(
         &mut self,
         name: impl Into<String>,
         mount: Mount,
         prisms: impl Into<Vec<Prism>>,
     ) {
-        self.body(name, Kind::Printed, mount, prisms);
+        self.add_body(name, Kind::Printed, mount, prisms);
     }
 
     /// Records the bodies that the body added last touches by design.
     pub fn allow_contact<S: AsRef<str>>(&mut self, names: &[S]) {
         if let Some(body) = self.bodies.last_mut() {
             let names = names.iter().map(|name| name.as_ref().to_owned());
-            body.meets.extend(names);
+            body.allowed_contacts.extend(names);
         }
     }
 
     /// Adds a printed ring between two parts on a screw.
-    pub fn spacer(&mut self, name: String, mount: Mount, centre: Vector, z: Span, meets: &[&str]) {
+    pub fn add_spacer(
+        &mut self,
+        name: String,
+        mount: Mount,
+        centre: Vector,
+        z: Span,
+        meets: &[&str],
+    ) {
         let hole = self.hole(centre);
         let ring = Prism::new(
             [Shape::disc(centre, hole.radius + self.parts.wall)],
             [hole],
             z,
         );
-        self.printed(name, mount, [ring]);
+        self.add_printed(name, mount, [ring]);
         self.allow_contact(meets);
     }
 
     /// Adds a screw and its nut.
-    pub fn bolt(&mut self, bolt: &Bolt) {
+    pub fn add_bolt(&mut self, bolt: &Bolt) {
         let screw = self.parts.screw;
         let sign = bolt.direction.sign();
-        let nut_end = bolt.nut + sign * screw.nut_height;
+        let nut_end = bolt.nut_z + sign * screw.nut_height;
         let length = bolt
             .length
-            .unwrap_or_else(|| screw_length((nut_end - bolt.head).abs()));
-        self.screw(bolt, length);
+            .unwrap_or_else(|| screw_length((nut_end - bolt.head_z).abs()));
+        self.add_screw(bolt, length);
         let flats = Shape::hexagon(bolt.at, screw.nut);
         let thread = Shape::disc(bolt.at, screw.diameter / 2.0);
-        let nut = Prism::new([flats], [thread], ordered(bolt.nut, nut_end));
-        self.body(format!("nut {}", bolt.name), Kind::Nut, bolt.mount, [nut]);
+        let nut = Prism::new([flats], [thread], ordered(bolt.nut_z, nut_end));
+        self.add_body(format!("nut {}", bolt.name), Kind::Nut, bolt.mount, [nut]);
         self.allow_contact(bolt.meets);
     }
 
     /// Adds a screw without a nut.
-    pub fn screw(&mut self, bolt: &Bolt, length: f64) {
+    pub fn add_screw(&mut self, bolt: &Bolt, length: f64) {
         let screw = self.parts.screw;
         let sign = bolt.direction.sign();
         let prism = |shape: Shape, from: f64, to: f64| Prism::solid([shape], ordered(from, to));
         let shank = Shape::disc(bolt.at, screw.diameter / 2.0);
-        let (head, height, kind) = if bolt.hex {
+        let (head, height, kind) = if bolt.is_hex {
             let hexagon = Shape::hexagon(bolt.at, screw.nut);
-            (hexagon, HEX, Kind::HexScrew(length))
+            (hexagon, HEX_HEAD_HEIGHT, Kind::HexScrew(length))
         } else {
             let disc = Shape::disc(bolt.at, screw.head / 2.0);
             (disc, screw.head_height, Kind::Screw(length))
         };
         let mut prisms = vec![
-            prism(shank, bolt.head, bolt.head + sign * length),
-            prism(head, bolt.head - sign * height, bolt.head),
+            prism(shank, bolt.head_z, bolt.head_z + sign * length),
+            prism(head, bolt.head_z - sign * height, bolt.head_z),
         ];
         prisms.sort_by(|a, b| a.z[0].total_cmp(&b.z[0]));
-        self.body(format!("screw {}", bolt.name), kind, bolt.mount, prisms);
+        self.add_body(format!("screw {}", bolt.name), kind, bolt.mount, prisms);
         self.allow_contact(bolt.meets);
     }
 
     /// Adds the screw of a joint on a servo's link. The link's underside holds the screw's
     /// head, which no key can reach once the link is on its servo.
-    pub fn held_joint(&mut self, name: &str, mount: Mount, at: Vector, top: f64, meets: &[&str]) {
-        self.bolt(&Bolt {
-            nut: top + PLAY,
+    pub fn add_held_joint(
+        &mut self,
+        name: &str,
+        mount: Mount,
+        at: Vector,
+        top: f64,
+        meets: &[&str],
+    ) {
+        self.add_bolt(&Bolt {
+            nut_z: top + PLAY,
             meets,
-            hex: true,
-            ..Bolt::new(name, mount, at, self.stack.held, Direction::Up)
+            is_hex: true,
+            ..Bolt::new(name, mount, at, self.stack.hex_head_face, Direction::Up)
         });
     }
 }

@@ -4,7 +4,7 @@ use lizard_kinematics::{End, Vector};
 
 use crate::bodies::builder::{Bolt, Builder, Direction};
 use crate::bodies::fittings;
-use crate::bodies::layout::{STANDOFF, STANDOFFS, UNO, UNO_BOARD};
+use crate::bodies::layout::{STANDOFF_RADIUS, STANDOFFS, UNO, UNO_BOARD_THICKNESS};
 use crate::bodies::leads;
 use crate::bodies::names::names;
 use crate::layers::body::{Kind, Mount, Prism};
@@ -16,7 +16,7 @@ pub const SPLINE: f64 = 2.4;
 /// Radius of the hole that a servo's own screw cuts its thread into, mm. One of a servo's two
 /// holes is beside the notch for the lead, with 0.35 mm between hole and notch: there the screw
 /// holds on the three other sides.
-const PILOT: f64 = 0.75;
+const PILOT_RADIUS: f64 = 0.75;
 
 /// Distance from a seat to the middle of its servo's number, and the number's outward shift from
 /// the servo's middle, mm.
@@ -31,7 +31,7 @@ const UNO_HOLES: [(f64, f64); 4] = [
     (-8.89, 31.75),
 ];
 /// The hole beside the pin AREF, whose header leaves no room for a screw's head.
-const UNO_TIGHT: usize = 1;
+const UNO_TIGHT_HOLE: usize = 1;
 
 fn at(x: f64, y: f64) -> Vector {
     Vector::new(x, y)
@@ -53,10 +53,10 @@ pub fn add(builder: &mut Builder) {
 fn opening(builder: &Builder, servo: usize, air: f64) -> Shape {
     let body = &builder.parts.servo;
     let size = at(body.width + 2.0 * air, body.length + 2.0 * air);
-    Shape::rectangle(middle(builder, servo), size, 0.0)
+    Shape::rectangle(case_middle(builder, servo), size, 0.0)
 }
 
-fn middle(builder: &Builder, servo: usize) -> Vector {
+fn case_middle(builder: &Builder, servo: usize) -> Vector {
     builder.layout.plate.cases[servo]
 }
 
@@ -67,7 +67,7 @@ fn inward(servo: usize) -> Vector {
 /// The positions of the two screws that hold a servo's flange.
 fn flange_holes(builder: &Builder, servo: usize) -> [Vector; 2] {
     let half = inward(servo) * (builder.parts.servo.holes / 2.0);
-    let middle = middle(builder, servo);
+    let middle = case_middle(builder, servo);
     [middle - half, middle + half]
 }
 
@@ -76,16 +76,21 @@ fn seat(builder: &Builder, servo: usize, more: f64) -> Shape {
     let body = &builder.parts.servo;
     let around = builder.parts.fit + builder.parts.wall + more;
     let size = at(body.width + 2.0 * around, body.flange + 2.0 + 2.0 * more);
-    Shape::rectangle(middle(builder, servo), size, 1.0)
+    Shape::rectangle(case_middle(builder, servo), size, 1.0)
 }
 
 /// The cut-outs that a servo needs in the plate and in its seat: for its case, for its lead, and
 /// for its screws.
 fn cutouts(builder: &Builder, servo: usize) -> Vec<Shape> {
     let (parts, outward) = (builder.parts, End::of_servo(servo).sign());
-    let notch = leads::notch(&parts.servo, middle(builder, servo), parts.fit, outward);
+    let notch = leads::notch(
+        &parts.servo,
+        case_middle(builder, servo),
+        parts.fit,
+        outward,
+    );
     let mut cut = vec![opening(builder, servo, parts.fit), notch];
-    cut.extend(flange_holes(builder, servo).map(|at| Shape::disc(at, PILOT)));
+    cut.extend(flange_holes(builder, servo).map(|at| Shape::disc(at, PILOT_RADIUS)));
     cut
 }
 
@@ -112,7 +117,7 @@ fn add_plate(builder: &mut Builder) {
     for (leg, [between, driven, idle]) in layout.legs.iter().zip(plate.arms) {
         let bar = |[from, to]: [Vector; 2], half: f64| Shape::bar(from, to, half);
         add.push(bar(between, plate.arm));
-        for (pivot, arm) in [(leg.driven, driven), (leg.idle, idle)] {
+        for (pivot, arm) in [(leg.crank_pivot, driven), (leg.follower_pivot, idle)] {
             add.push(bar(arm, plate.arm - 0.01));
             through.push(builder.hole(pivot));
         }
@@ -123,11 +128,11 @@ fn add_plate(builder: &mut Builder) {
     let [low, high] = stack.plate;
     let engraved = [&through[..], &numbers(builder)].concat();
     let prisms = [
-        Prism::new(add.clone(), through, [low, high - mark::DEEP]),
-        Prism::new(add, engraved, [high - mark::DEEP, high]),
+        Prism::new(add.clone(), through, [low, high - mark::MARK_DEPTH]),
+        Prism::new(add, engraved, [high - mark::MARK_DEPTH, high]),
         Prism::new(seats, cut, stack.seat),
     ];
-    builder.printed("plate", Mount::Chassis, prisms);
+    builder.add_printed("plate", Mount::Chassis, prisms);
 }
 
 /// The piece of the plate around one servo and the pivots of its leg, which is printed first, as
@@ -137,7 +142,7 @@ pub fn corner(builder: &Builder, servo: usize) -> Vec<Prism> {
     const AROUND: f64 = 2.0;
     let (parts, stack, plate) = (builder.parts, builder.stack, builder.layout.plate);
     let leg = &builder.layout.legs[servo];
-    let middle = middle(builder, servo);
+    let middle = case_middle(builder, servo);
     let mut add = vec![seat(builder, servo, AROUND)];
     let [between, driven, idle] = plate.arms[servo];
     add.push(Shape::bar(between[0], between[1], plate.arm));
@@ -146,7 +151,7 @@ pub fn corner(builder: &Builder, servo: usize) -> Vec<Prism> {
         add.push(Shape::bar(to, middle, plate.arm - 0.02));
     }
     let cut = cutouts(builder, servo);
-    let pivots = [leg.driven, leg.idle].map(|at| builder.hole(at));
+    let pivots = [leg.crank_pivot, leg.follower_pivot].map(|at| builder.hole(at));
     let raised = stack.seat.map(|z| z + parts.plate);
     vec![
         Prism::new(add, [&cut[..], &pivots].concat(), [0.0, parts.plate]),
@@ -159,7 +164,7 @@ fn numbers(builder: &Builder) -> Vec<Shape> {
     let body = &builder.parts.servo;
     let strokes = (0..4).flat_map(|servo| {
         let [wide, high] = mark::size("1");
-        let middle = middle(builder, servo);
+        let middle = case_middle(builder, servo);
         // On the inner side of the seat, away from the hole for the leads.
         let out = middle.x.signum() * NUMBER;
         let before = inward(servo) * (body.flange / 2.0 + 1.0 + NUMBER);
@@ -177,7 +182,11 @@ fn add_case(builder: &mut Builder, servo: usize) {
     let layer =
         |add: Vec<Shape>, low: f64, high: f64| Prism::solid(add, [bottom + low, bottom + high]);
     let case = opening(builder, servo, 0.0);
-    let flange = Shape::rectangle(middle(builder, servo), at(body.width, body.flange), 0.0);
+    let flange = Shape::rectangle(
+        case_middle(builder, servo),
+        at(body.width, body.flange),
+        0.0,
+    );
     let gears = vec![
         Shape::disc(shaft, body.width / 2.0 - 0.05),
         Shape::bar(shaft, shaft + inward(servo) * body.shaft, 3.0),
@@ -191,12 +200,12 @@ fn add_case(builder: &mut Builder, servo: usize) {
         layer(gears, body.height, body.boss),
         layer(spline, body.boss, body.boss + 3.0),
     ];
-    builder.body(format!("servo {name}"), Kind::Servo, Mount::Chassis, prisms);
+    builder.add_body(format!("servo {name}"), Kind::Servo, Mount::Chassis, prisms);
     builder.allow_contact(&[format!("horn {name}")]);
     for (number, at) in flange_holes(builder, servo).into_iter().enumerate() {
         let head = Prism::solid([Shape::disc(at, 2.2)], [bottom + over, bottom + over + 1.6]);
         let screw = format!("servo screw {name} {}", number + 1);
-        builder.body(screw, Kind::ServoScrew, Mount::Chassis, [head]);
+        builder.add_body(screw, Kind::ServoScrew, Mount::Chassis, [head]);
     }
 }
 
@@ -204,7 +213,7 @@ fn add_battery(builder: &mut Builder) {
     let [x, y, z] = builder.parts.battery;
     let block = Shape::rectangle(Vector::default(), at(x, y), 0.0);
     let block = Prism::solid([block], [0.0, z]);
-    builder.body("battery", Kind::Battery, Mount::Chassis, [block]);
+    builder.add_body("battery", Kind::Battery, Mount::Chassis, [block]);
 }
 
 fn add_deck(builder: &mut Builder) {
@@ -228,20 +237,20 @@ fn add_deck(builder: &mut Builder) {
         Prism::new(add, holes, stack.deck),
         Prism::new(bosses, threads, stack.boss),
     ];
-    builder.printed("deck", Mount::Chassis, prisms);
+    builder.add_printed("deck", Mount::Chassis, prisms);
     for (number, place) in (1..).zip(standoffs()) {
         let length = stack.deck[0];
-        let (post, thread) = (Shape::disc(place, STANDOFF), builder.thread(place));
+        let (post, thread) = (Shape::disc(place, STANDOFF_RADIUS), builder.thread(place));
         let post = Prism::new([post], [thread], [0.0, length]);
         let name = format!("standoff {number}");
-        builder.body(&name, Kind::Standoff(length), Mount::Chassis, [post]);
+        builder.add_body(&name, Kind::Standoff(length), Mount::Chassis, [post]);
         for (end, head, points) in [
             ("below", stack.plate[0], Direction::Up),
             ("above", stack.deck[1], Direction::Down),
         ] {
             let name = format!("{name} {end}");
             let bolt = Bolt::new(&name, Mount::Chassis, place, head, points);
-            builder.screw(&bolt, parts.plate + 4.0);
+            builder.add_screw(&bolt, parts.plate + 4.0);
         }
     }
 }
@@ -249,18 +258,18 @@ fn add_deck(builder: &mut Builder) {
 fn add_board(builder: &mut Builder) {
     let low = builder.stack.boss[1];
     let [x, y, z] = UNO;
-    let top = low + UNO_BOARD;
+    let top = low + UNO_BOARD_THICKNESS;
     let block = |x: f64, y: f64| [Shape::rectangle(Vector::default(), at(x, y), 0.0)];
     let holes = UNO_HOLES.map(|(x, y)| Shape::disc(at(x, y), 1.6));
     let heads = UNO_HOLES.map(|(x, y)| builder.sink(at(x, y)));
     let board = Prism::new(block(x, y), holes, [low, top]);
     let parts = Prism::new(block(x - 4.0, y - 4.0), heads, [top, low + z]);
-    builder.body("board", Kind::Board, Mount::Chassis, [board, parts]);
+    builder.add_body("board", Kind::Board, Mount::Chassis, [board, parts]);
     for (number, (x, y)) in UNO_HOLES.into_iter().enumerate() {
-        if number != UNO_TIGHT {
+        if number != UNO_TIGHT_HOLE {
             let name = format!("board {}", number + 1);
             let bolt = Bolt::new(&name, Mount::Chassis, at(x, y), top, Direction::Down);
-            builder.screw(&bolt, 10.0);
+            builder.add_screw(&bolt, 10.0);
         }
     }
 }

@@ -14,7 +14,10 @@ pub fn add(builder: &mut Builder) {
     for end in End::ALL {
         let [left, right] = end.servos();
         let Stack {
-            link, lower, upper, ..
+            link,
+            lower_coupler: lower,
+            upper_coupler: upper,
+            ..
         } = builder.stack;
         add_bar(builder, left, lower);
         add_bar(builder, right, upper);
@@ -25,9 +28,9 @@ pub fn add(builder: &mut Builder) {
             let (name, _) = names(servo);
             if let Some(high) = ring {
                 let name = format!("tip spacer {name}");
-                builder.spacer(name, mount, tip, [link[1], high], &meets);
+                builder.add_spacer(name, mount, tip, [link[1], high], &meets);
             }
-            builder.held_joint(&format!("tip {name}"), mount, tip, top, &meets);
+            builder.add_held_joint(&format!("tip {name}"), mount, tip, top, &meets);
         }
         // The screw of the end point joins both couplers and the decorative parts.
         let apex = Vector::new(coupler_length(builder.robot, left), 0.0);
@@ -36,8 +39,8 @@ pub fn add(builder: &mut Builder) {
         let right = coupler(right);
         meets.push(&right);
         let (head, mount) = (lower[0] - looks.below, Mount::Coupler(left));
-        builder.bolt(&Bolt {
-            nut: upper[1] + looks.above + PLAY,
+        builder.add_bolt(&Bolt {
+            nut_z: upper[1] + looks.above + PLAY,
             meets: &meets,
             ..Bolt::new(end.name(), mount, apex, head, Direction::Up)
         });
@@ -65,5 +68,5 @@ fn add_bar(builder: &mut Builder, servo: usize, z: Span) {
         }
         None => vec![layer(None, z)],
     };
-    builder.printed(coupler(servo), Mount::Coupler(servo), prisms);
+    builder.add_printed(coupler(servo), Mount::Coupler(servo), prisms);
 }

@@ -7,7 +7,7 @@
 use lizard_kinematics::Vector;
 
 use crate::bodies::builder::Builder;
-use crate::bodies::layout::{STANDOFF, STANDOFFS, UNO, UNO_BOARD};
+use crate::bodies::layout::{STANDOFF_RADIUS, STANDOFFS, UNO, UNO_BOARD_THICKNESS};
 use crate::layers::body::{Kind, Mount, Prism};
 use crate::layers::fitting::{Fitting, PITCH, STRAP};
 use crate::layers::shape::Shape;
@@ -17,7 +17,7 @@ const STRAP_SLOT: [f64; 2] = [17.0, 2.4];
 /// Size of a slot for a cable tie, mm: along the plate and across.
 const TIE_SLOT: [f64; 2] = [4.0, 2.0];
 /// Least distance of the terminal strips' middles from the plate's middle, mm.
-const STRIPS: f64 = 13.2;
+const MIN_STRIP_X: f64 = 13.2;
 /// Distance from the middle of the plate to the cable ties, which pass beside the battery's ends, mm.
 const TIES: f64 = 31.5;
 /// Thickness of a cable tie, mm.
@@ -33,13 +33,13 @@ const WING_OPENINGS: [[[f64; 2]; 2]; 2] = [
     [[32.5, 43.0], [-12.0, 26.0]],
 ];
 /// Distance of the inner edge of the fittings on a wing from the middle, mm.
-const ON_WING: f64 = 29.5;
+const WING_FITTING_X: f64 = 29.5;
 /// Distances of the cable ties of a wing from the middle, mm: on the inner and on the outer side of the fittings.
 const WING_TIES: [f64; 2] = [28.0, 48.4];
 /// Height of the round socket's middle above the board, and its length beyond the board's edge, mm.
 const SOCKET: [f64; 2] = [6.5, 2.0];
 /// The round socket's middle, mm to the right of the board's middle.
-const SOCKET_AT: f64 = 19.05;
+const SOCKET_X: f64 = 19.05;
 
 fn at(x: f64, y: f64) -> Vector {
     Vector::new(x, y)
@@ -56,7 +56,7 @@ pub fn slots(builder: &Builder) -> Vec<Shape> {
     if let Some(x) = strap_slot_x(builder) {
         slots.extend([-x, x].map(|x| slot(x, 0.0, STRAP_SLOT)));
     }
-    let strips = strips(builder);
+    let strips = strip_x(builder);
     for x in [-strips - 4.5, -strips + 4.5, strips - 4.5, strips + 4.5] {
         slots.extend([-TIES, TIES].map(|y| slot(x, y, TIE_SLOT)));
     }
@@ -65,11 +65,11 @@ pub fn slots(builder: &Builder) -> Vec<Shape> {
 
 /// Distance from the middle of the plate to the middles of the terminal strips, mm. The servos' leads pass between
 /// the strips, along the inner sides of the servos' cases.
-fn strips(builder: &Builder) -> f64 {
+fn strip_x(builder: &Builder) -> f64 {
     let plate = builder.layout.plate;
     let cases = plate.cases.iter().map(|case| case.x.abs());
     let lead = cases.fold(0.0, f64::max) - plate.case.x / 2.0;
-    STRIPS.max(lead + 0.3 + length(Fitting::Ground, 0) / 2.0)
+    MIN_STRIP_X.max(lead + 0.3 + length(Fitting::Ground, 0) / 2.0)
 }
 
 /// The outlines of the deck's wings and of the arms that carry them from the holes of the board; then the holes in
@@ -93,16 +93,16 @@ pub fn wings(holes: [(f64, f64); 4]) -> [Vec<Shape>; 2] {
     }
     // The ties of the signal strip are behind the resistors, whose wires lie beside the middle of the strip.
     for x in WING_TIES {
-        cut.push(slot(-x, signals() - 11.0, TIE_SLOT));
+        cut.push(slot(-x, signal_strip_y() - 11.0, TIE_SLOT));
     }
-    cut.push(slot(WING_TIES[0], fuse(), TIE_SLOT));
+    cut.push(slot(WING_TIES[0], fuse_y(), TIE_SLOT));
     cut.push(slot(
-        ON_WING + length(Fitting::Fuse, 0) + 2.4,
-        fuse(),
+        WING_FITTING_X + length(Fitting::Fuse, 0) + 2.4,
+        fuse_y(),
         TIE_SLOT,
     ));
     let [along, across] = TIE_SLOT;
-    cut.push(slot(38.5, tie_of_switch(), [across, along]));
+    cut.push(slot(38.5, switch_tie_y(), [across, along]));
     [add, cut]
 }
 
@@ -112,24 +112,24 @@ fn length(fitting: Fitting, axis: usize) -> f64 {
 
 /// Position of the middle of the signal strip, mm ahead of the plate's middle. The strip begins at the wing's rear
 /// end.
-fn signals() -> f64 {
+fn signal_strip_y() -> f64 {
     0.5 - WING[2] + length(Fitting::Signals, 1) / 2.0
 }
 
 /// Position of the fuse's middle, mm ahead of the plate's middle. The fuse is at the wing's front end.
-fn fuse() -> f64 {
+fn fuse_y() -> f64 {
     WING[2] - 0.5 - length(Fitting::Fuse, 1) / 2.0
 }
 
 /// Position of the switch's middle, mm ahead of the plate's middle. The switch is at the wing's rear end, which
 /// its cable tie goes around.
-fn switch() -> f64 {
+fn switch_y() -> f64 {
     0.3 - WING[2] + length(Fitting::Switch, 1) / 2.0
 }
 
 /// Position of the slot for the switch's cable tie, in front of the switch, mm ahead of the plate's middle.
-fn tie_of_switch() -> f64 {
-    switch() + length(Fitting::Switch, 1) / 2.0 + 1.2
+fn switch_tie_y() -> f64 {
+    switch_y() + length(Fitting::Switch, 1) / 2.0 + 1.2
 }
 
 /// Distance of the strap's slots from the plate's middle, mm; `None` if the plate is too narrow for slots beside
@@ -171,7 +171,7 @@ fn add_sized_block(
 ) {
     let shape = Shape::rectangle(middle, at(wide, long), 0.0);
     let prism = Prism::solid([shape], [low, low + high]);
-    builder.body(name, Kind::Fitting(fitting), Mount::Chassis, [prism]);
+    builder.add_body(name, Kind::Fitting(fitting), Mount::Chassis, [prism]);
 }
 
 /// Adds the fittings under the deck and under the plate.
@@ -182,7 +182,7 @@ fn add_below_plate(builder: &mut Builder) {
     let deck = stack.deck[0];
     let room = STANDOFFS[1] - 3.4;
     let half = |fitting: Fitting| length(fitting, 1) / 2.0;
-    let strips = strips(builder);
+    let strips = strip_x(builder);
     // The ground strip reaches this far forward and back; the supply strip ends there in front, the capacitor
     // behind.
     let strip = half(Fitting::Ground);
@@ -208,30 +208,30 @@ fn add_below_plate(builder: &mut Builder) {
 fn add_on_deck(builder: &mut Builder) {
     let top = builder.stack.deck[1];
     let half = |fitting: Fitting| length(fitting, 0) / 2.0;
-    let x = |fitting: Fitting| ON_WING + half(fitting);
+    let x = |fitting: Fitting| WING_FITTING_X + half(fitting);
     add_block(
         builder,
         Fitting::Signals,
-        at(-x(Fitting::Signals), signals()),
+        at(-x(Fitting::Signals), signal_strip_y()),
         top,
     );
     let front = WING[2] - 0.5 - length(Fitting::Radio, 1) / 2.0;
     add_block(builder, Fitting::Radio, at(-x(Fitting::Radio), front), top);
-    add_block(builder, Fitting::Fuse, at(x(Fitting::Fuse), fuse()), top);
+    add_block(builder, Fitting::Fuse, at(x(Fitting::Fuse), fuse_y()), top);
     add_block(
         builder,
         Fitting::Switch,
-        at(x(Fitting::Switch), switch()),
+        at(x(Fitting::Switch), switch_y()),
         top,
     );
-    let plus_y = fuse() - (length(Fitting::Fuse, 1) + length(Fitting::Plus, 1)) / 2.0 - 0.3;
+    let plus_y = fuse_y() - (length(Fitting::Fuse, 1) + length(Fitting::Plus, 1)) / 2.0 - 0.3;
     add_block(builder, Fitting::Plus, at(x(Fitting::Plus), plus_y), top);
     // Each resistor leads from a signal terminal to the middle one: two span one pitch, two span two.
-    let outside = -ON_WING - length(Fitting::Signals, 0) - 0.4 - half(Fitting::Resistor);
+    let outside = -WING_FITTING_X - length(Fitting::Signals, 0) - 0.4 - half(Fitting::Resistor);
     let row = length(Fitting::Resistor, 0) + 0.4;
     let places = [(1.0, -1.0), (0.0, -0.5), (0.0, 0.5), (1.0, 1.0)];
     for (number, (out, pitches)) in (1..).zip(places) {
-        let middle = at(outside - out * row, signals() + pitches * PITCH);
+        let middle = at(outside - out * row, signal_strip_y() + pitches * PITCH);
         let (size, name) = (Fitting::Resistor.facts().size, format!("resistor {number}"));
         add_sized_block(builder, Fitting::Resistor, name, middle, top + 4.0, size);
     }
@@ -244,7 +244,7 @@ fn add_plugs(builder: &mut Builder) {
     let [wide, thick, tall] = Fitting::Plug.facts().size;
     let end = battery / 2.0 + 0.3;
     let name = Fitting::Plug.name().to_owned();
-    if end + thick <= STANDOFFS[1] - STANDOFF {
+    if end + thick <= STANDOFFS[1] - STANDOFF_RADIUS {
         let middle = at(0.0, end + thick / 2.0);
         add_sized_block(
             builder,
@@ -269,8 +269,8 @@ fn add_plugs(builder: &mut Builder) {
     let [above, beyond] = SOCKET;
     let [_, long, high] = Fitting::RoundPlug.facts().size;
     let y = -(UNO[1] + long) / 2.0 - beyond - 0.1;
-    let low = builder.stack.boss[1] + UNO_BOARD + above - high / 2.0;
-    add_block(builder, Fitting::RoundPlug, at(SOCKET_AT, y), low);
+    let low = builder.stack.boss[1] + UNO_BOARD_THICKNESS + above - high / 2.0;
+    add_block(builder, Fitting::RoundPlug, at(SOCKET_X, y), low);
 }
 
 /// Adds the strap around battery and plate.
@@ -297,5 +297,5 @@ fn add_strap(builder: &mut Builder) {
         Prism::solid([across], [battery, battery + thick]),
     ];
     let (fitting, mount) = (Fitting::Strap, Mount::Chassis);
-    builder.body(fitting.name(), Kind::Fitting(fitting), mount, prisms);
+    builder.add_body(fitting.name(), Kind::Fitting(fitting), mount, prisms);
 }

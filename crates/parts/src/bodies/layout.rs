@@ -9,12 +9,12 @@ use lizard_robot::{LegPlan, Plate, Robot};
 pub const STANDOFFS: [f64; 2] = [8.0, 39.0];
 
 /// Radius of the circle around a hexagonal standoff of 5.5 mm over flats, mm.
-pub const STANDOFF: f64 = 3.2;
+pub const STANDOFF_RADIUS: f64 = 3.2;
 /// Size of an Arduino UNO, mm: its board of 2700 x 2100 mil, and the height from the
 /// board's underside to the top of its parts.
 pub const UNO: [f64; 3] = [53.34, 68.58, 12.0];
 /// Thickness of an Arduino UNO's board, mm.
-pub const UNO_BOARD: f64 = 1.6;
+pub const UNO_BOARD_THICKNESS: f64 = 1.6;
 
 /// The pivots of all moving bodies, and the lengths of the servos' links.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,7 +22,7 @@ pub struct Layout {
     /// The servos' shafts, mm, chassis frame, servo order.
     pub shafts: [Vector; 4],
     /// The side of a link's arm: 1 if it is counter-clockwise from the crank, otherwise -1.
-    pub hand: [f64; 4],
+    pub arm_side: [f64; 4],
     /// Length of the cranks of head and tail, mm.
     pub crank: [f64; 4],
     /// Length of the arms of the sliders, mm.
@@ -50,7 +50,7 @@ impl Layout {
         }
         Self {
             shafts: lizard.shafts(),
-            hand: ARM_SIDE,
+            arm_side: ARM_SIDE,
             crank,
             arm,
             legs: *robot.legs(),

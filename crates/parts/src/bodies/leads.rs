@@ -24,7 +24,7 @@ const LEAD_EXIT: [f64; 2] = [3.0, 4.0];
 /// Length of lead that sticks out of the case before the fold, mm.
 const BEND: f64 = 4.0;
 /// Size of a hole for the leads and the wires, mm: across and along the plate.
-const WIRES: [f64; 2] = [8.4, 6.0];
+const WIRE_HOLE_SIZE: [f64; 2] = [8.4, 6.0];
 /// Distance of such a hole's middle beyond the middles of the standoffs, mm.
 const HOLE_BEYOND_STANDOFFS: f64 = 2.0;
 
@@ -40,14 +40,15 @@ pub fn notch(body: &ServoBody, middle: Vector, fit: f64, outward: f64) -> Shape 
     Shape::hull(&[left, right].concat(), 0.0)
 }
 
-fn wires(sign: f64) -> Vector {
+fn wire_hole_centre(sign: f64) -> Vector {
     Vector::new(0.0, sign * (STANDOFFS[1] + HOLE_BEYOND_STANDOFFS))
 }
 
 /// The holes in plate and deck through which leads and wires go up.
 pub fn holes() -> [Shape; 2] {
-    let [across, along] = WIRES;
-    [1.0, -1.0].map(|sign| Shape::rectangle(wires(sign), Vector::new(across, along), 1.0))
+    let [across, along] = WIRE_HOLE_SIZE;
+    [1.0, -1.0]
+        .map(|sign| Shape::rectangle(wire_hole_centre(sign), Vector::new(across, along), 1.0))
 }
 
 pub fn add(builder: &mut Builder) {
@@ -62,7 +63,7 @@ pub fn add(builder: &mut Builder) {
         let x = middle.x + inner * (half.x + LEAD[1]);
         let end = middle.y + outward * (half.y + BEND / 2.0);
         let at = Vector::new;
-        let up = wires(outward) + at(-inner * 1.6, 0.0);
+        let up = wire_hole_centre(outward) + at(-inner * 1.6, 0.0);
         let radius = LEAD[1];
         let low = builder.stack.servo + LEAD_EXIT[0];
         let [bend, corner] = [at(middle.x, end), at(x, end)];
@@ -78,6 +79,6 @@ pub fn add(builder: &mut Builder) {
             Prism::solid(way, lies),
             Prism::solid([Shape::disc(up, radius)], [lies[1], builder.stack.deck[1]]),
         ];
-        builder.body(format!("lead {name}"), Kind::Lead, Mount::Chassis, prisms);
+        builder.add_body(format!("lead {name}"), Kind::Lead, Mount::Chassis, prisms);
     }
 }

@@ -73,7 +73,7 @@ fn add_crank(builder: &mut Builder, servo: usize) {
         Prism::new([bearing], holes, [stack.anchor[1], stack.bearing[1]]),
     ];
     prisms.retain(Prism::has_height);
-    builder.printed(format!("crank {leg}"), Mount::Crank(servo), prisms);
+    builder.add_printed(format!("crank {leg}"), Mount::Crank(servo), prisms);
 }
 
 fn add_follower(builder: &mut Builder, servo: usize) {
@@ -88,7 +88,7 @@ fn add_follower(builder: &mut Builder, servo: usize) {
         Shape::bar(pivot, joint, half),
     ];
     let prisms = [Prism::new(bar, holes, stack.crank), bearing];
-    builder.printed(format!("follower {leg}"), Mount::Follower(servo), prisms);
+    builder.add_printed(format!("follower {leg}"), Mount::Follower(servo), prisms);
 }
 
 /// The places of the two screws between coupler and foot, in the coupler's frame.
@@ -120,7 +120,7 @@ fn add_coupler(builder: &mut Builder, servo: usize) {
         Prism::new(bar.clone(), through, [low, seat]),
         Prism::new(bar, [joints, sunk].concat(), [seat, high]),
     ];
-    builder.printed(format!("leg coupler {leg}"), Mount::Foot(servo), prisms);
+    builder.add_printed(format!("leg coupler {leg}"), Mount::Foot(servo), prisms);
 }
 
 fn add_foot(builder: &mut Builder, servo: usize) {
@@ -158,15 +158,15 @@ fn add_foot(builder: &mut Builder, servo: usize) {
         Prism::new(column, threads, [holes, stack.leg_coupler[0]]),
     ];
     let mount = Mount::Foot(servo);
-    builder.printed(format!("foot {leg}"), mount, prisms);
+    builder.add_printed(format!("foot {leg}"), mount, prisms);
     for (number, at) in (1..).zip(clamps) {
         let name = format!("foot {leg} {number}");
         let bolt = Bolt::new(&name, mount, at, clamp_seat(builder), Direction::Down);
-        builder.screw(&bolt, CLAMP_SCREW);
+        builder.add_screw(&bolt, CLAMP_SCREW);
     }
     let head = stack.pad[1] - PAD_LIP;
     let name = format!("height {leg}");
-    builder.screw(
+    builder.add_screw(
         &Bolt::new(&name, mount, at, head, Direction::Up),
         FOOT_SCREW,
     );
@@ -176,12 +176,12 @@ fn add_foot(builder: &mut Builder, servo: usize) {
         Shape::disc(at, screw.diameter / 2.0),
     );
     let sunk = Prism::new([flats], [thread], [stack.leaf[0], nut]);
-    builder.body(format!("height nut {leg}"), Kind::Nut, mount, [sunk]);
+    builder.add_body(format!("height nut {leg}"), Kind::Nut, mount, [sunk]);
     // The coupler never turns, so a direction stays the same in its frame.
-    let along = builder.layout.legs[servo].along;
+    let along = builder.layout.legs[servo].coupler_direction;
     let ahead = Vector::new(along.y, along.x);
     let pad = pads::layers(builder.parts, at, stack.floor, ahead);
-    builder.body(format!("pad {leg}"), Kind::Pad, mount, pad);
+    builder.add_body(format!("pad {leg}"), Kind::Pad, mount, pad);
 }
 
 fn add_screws(builder: &mut Builder, servo: usize) {
@@ -192,24 +192,30 @@ fn add_screws(builder: &mut Builder, servo: usize) {
     let crank = Mount::Crank(servo);
     for (mount, name) in [(crank, "crank"), (Mount::Follower(servo), "follower")] {
         let (head, screw) = (stack.bearing[1] + PLAY, format!("{name} pivot {leg}"));
-        builder.bolt(&Bolt {
-            nut: stack.plate[0] - PLAY,
+        builder.add_bolt(&Bolt {
+            nut_z: stack.plate[0] - PLAY,
             meets: &["plate"],
             ..Bolt::new(&screw, mount, pivot, head, Direction::Down)
         });
         let (head, screw) = (stack.leg_coupler[0], format!("{name} joint {leg}"));
-        builder.bolt(&Bolt {
-            nut: stack.crank[1] + PLAY,
+        builder.add_bolt(&Bolt {
+            nut_z: stack.crank[1] + PLAY,
             meets: &[&coupler],
             ..Bolt::new(&screw, mount, joint, head, Direction::Up)
         });
     }
     let (nut, length) = stack.anchor_nut(parts);
     let name = format!("leg anchor {leg}");
-    builder.bolt(&Bolt {
-        nut,
+    builder.add_bolt(&Bolt {
+        nut_z: nut,
         length: Some(length),
-        meets: &[&builder.strut(leg)],
-        ..Bolt::new(&name, crank, anchor, stack.on_hook, Direction::Down)
+        meets: &[&builder.strut_name(leg)],
+        ..Bolt::new(
+            &name,
+            crank,
+            anchor,
+            stack.anchor_head_face,
+            Direction::Down,
+        )
     });
 }

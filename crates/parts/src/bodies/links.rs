@@ -64,7 +64,7 @@ fn add_horn(builder: &mut Builder, servo: usize) {
         Prism::new([hub], [spline], [low + horn.thickness - horn.height, low]),
         Prism::new(arm(&horn, 0.0), through, [low, low + horn.thickness]),
     ];
-    builder.body(
+    builder.add_body(
         format!("horn {name}"),
         Kind::Horn,
         Mount::Link(servo),
@@ -78,7 +78,7 @@ fn add_link(builder: &mut Builder, servo: usize) {
     let (parts, stack, layout) = (builder.parts, builder.stack, builder.layout);
     let hub = Vector::default();
     let tip = Vector::new(layout.crank[servo], 0.0);
-    let side = Vector::new(0.0, layout.hand[servo] * layout.arm[servo]);
+    let side = Vector::new(0.0, layout.arm_side[servo] * layout.arm[servo]);
     let anchor = layout.legs[servo].anchor;
     let half = builder.half_bar();
     let round = parts.horn.hub / 2.0 + 2.0 * parts.fit + 1.5 * parts.wall;
@@ -104,13 +104,13 @@ fn add_link(builder: &mut Builder, servo: usize) {
         (&holes[..], [low, high]),
         (
             &[tip, side].map(|position| builder.pocket(position)),
-            [low, stack.held],
+            [low, stack.hex_head_face],
         ),
         (&[horn_hub], [low, stack.horn[0]]),
         (&pilots, [low, stack.horn[0]]),
         (&pocket, stack.horn),
         (&[anchor_hole], [low, high]),
-        (&[builder.sink(anchor)], stack.sunk),
+        (&[builder.sink(anchor)], stack.head_recess),
     ];
     let mut heights: Vec<f64> = cuts.iter().flat_map(|(_, z)| *z).collect();
     heights.sort_by(f64::total_cmp);
@@ -122,7 +122,7 @@ fn add_link(builder: &mut Builder, servo: usize) {
         Prism::new(add.clone(), cut, [z[0], z[1]])
     };
     let prisms: Vec<_> = heights.windows(2).map(layer).collect();
-    builder.printed(format!("link {name}"), Mount::Link(servo), prisms);
+    builder.add_printed(format!("link {name}"), Mount::Link(servo), prisms);
     builder.allow_contact(&[format!("servo {name}")]);
 }
 
@@ -143,7 +143,7 @@ fn add_horn_screws(builder: &mut Builder, servo: usize) {
         ];
         let name = format!("horn screw {name} {}", number + 1);
         let kind = Kind::HornScrew(HORN_SCREW);
-        builder.body(name, kind, Mount::Link(servo), prisms);
+        builder.add_body(name, kind, Mount::Link(servo), prisms);
     }
 }
 
@@ -152,17 +152,23 @@ fn add_anchor(builder: &mut Builder, servo: usize) {
     let (name, leg) = names(servo);
     let (stack, parts) = (builder.stack, builder.parts);
     let position = builder.layout.legs[servo].anchor;
-    let strut = builder.strut(leg);
-    let ring = [stack.on_hook, stack.link[0] - PLAY];
+    let strut = builder.strut_name(leg);
+    let ring = [stack.anchor_head_face, stack.link[0] - PLAY];
     // Thin enough to fit beside the spring's coil.
     let thin = Shape::disc(position, parts.screw.diameter / 2.0 + RING);
     let prism = Prism::new([thin], [builder.hole(position)], ring);
-    builder.printed(format!("strut ring {name}"), Mount::Link(servo), [prism]);
+    builder.add_printed(format!("strut ring {name}"), Mount::Link(servo), [prism]);
     builder.allow_contact(&[&strut]);
     let (mount, screw) = (Mount::Link(servo), format!("anchor {name}"));
-    builder.bolt(&Bolt {
-        nut: stack.strut[0] - PLAY,
+    builder.add_bolt(&Bolt {
+        nut_z: stack.strut[0] - PLAY,
         meets: &[&strut],
-        ..Bolt::new(&screw, mount, position, stack.sunk[0], Direction::Down)
+        ..Bolt::new(
+            &screw,
+            mount,
+            position,
+            stack.head_recess[0],
+            Direction::Down,
+        )
     });
 }

@@ -9,22 +9,22 @@ use lizard_kinematics::{End, Solution, Vector};
 
 use crate::bodies::builder::{Bolt, Builder, Direction};
 use crate::bodies::names::names;
-use crate::layers::body::{Mount, Prism, at_end, coupler_length};
+use crate::layers::body::{Mount, Prism, coupler_length, end_and_hand};
 use crate::layers::shape::Shape;
 use crate::layers::stack::PLAY;
 
 /// Thickness of a decorative part, mm.
-const THICK: f64 = 3.0;
+const THICKNESS: f64 = 3.0;
 /// Distance from the end point to the second screw, mm.
-const BACK: f64 = 14.0;
+const SECOND_SCREW_DISTANCE: f64 = 14.0;
 /// Length of the second screw, which cuts its own thread, mm.
 const SCREW: f64 = 6.0;
 /// Angle of each tail link from straight back, deg.
-const APART: f64 = 3.5;
+const TAIL_LINK_ANGLE: f64 = 3.5;
 
 /// The decorative parts that an end carries beyond its couplers.
 #[derive(Default)]
-pub struct Looks {
+pub struct EndDecoration {
     /// Thickness of the part under the lower coupler at the end point, mm; 0 without one.
     pub below: f64,
     /// Thickness of the part on the upper coupler, mm; 0 without one.
@@ -44,8 +44,8 @@ fn length(builder: &Builder, end: End) -> f64 {
 /// The hole for the second screw in a coupler: in the coupler's lower layer, and in its upper one, where the
 /// head of a screw from above is sunk. `None` for a coupler that carries no decorative part.
 pub fn second_screw_holes(builder: &Builder, servo: usize, point: Vector) -> Option<[Shape; 2]> {
-    let (end, hand) = at_end(servo);
-    let at = point - Vector::new(BACK, 0.0);
+    let (end, hand) = end_and_hand(servo);
+    let at = point - Vector::new(SECOND_SCREW_DISTANCE, 0.0);
     match (length(builder, end) > 0.0, end, hand) {
         (true, End::Tail, 0) => Some([builder.hole(at), builder.sink(at)]),
         (true, _, 1) => Some([builder.thread(at), builder.thread(at)]),
@@ -53,11 +53,11 @@ pub fn second_screw_holes(builder: &Builder, servo: usize, point: Vector) -> Opt
     }
 }
 
-pub fn add(builder: &mut Builder, end: End) -> Looks {
+pub fn add(builder: &mut Builder, end: End) -> EndDecoration {
     let length = length(builder, end);
     let neutral = builder.robot.lizard().solve(&builder.robot.neutral());
     let (true, Ok(neutral)) = (length > 0.0, neutral) else {
-        return Looks::default();
+        return EndDecoration::default();
     };
     let [left, right] = end.servos();
     let (below, name, upper) = match end {
@@ -69,23 +69,23 @@ pub fn add(builder: &mut Builder, end: End) -> Looks {
             let shape = tail(builder, left, &neutral, length);
             add_under_lower_link(builder, left, shape);
             let shape = tail(builder, right, &neutral, length);
-            (THICK, format!("tail {}", names(right).0), shape)
+            (THICKNESS, format!("tail {}", names(right).0), shape)
         }
     };
     add_on_upper_link(builder, right, &name, upper);
-    Looks {
+    EndDecoration {
         below,
-        above: THICK,
+        above: THICKNESS,
         on_right: vec![name],
     }
 }
 
 /// A flat part: its filled shapes and its holes.
-type Flat = (Vec<Shape>, Vec<Shape>);
+type FlatPart = (Vec<Shape>, Vec<Shape>);
 
 /// An end's point, and the direction that points outward at neutral, both in a coupler's frame.
 fn outward(builder: &Builder, servo: usize, neutral: &Solution) -> [Vector; 2] {
-    let (end, hand) = at_end(servo);
+    let (end, hand) = end_and_hand(servo);
     let bars = neutral.end(end);
     let along = end.mirror([bars.left_coupler, bars.right_coupler][hand]);
     let ahead = Vector::new(0.0, end.sign());
@@ -93,32 +93,39 @@ fn outward(builder: &Builder, servo: usize, neutral: &Solution) -> [Vector; 2] {
     [point, Vector::new(ahead.dot(along), along.cross(ahead))]
 }
 
-fn turned(direction: Vector, by: f64) -> Vector {
+fn rotate(direction: Vector, by: f64) -> Vector {
     let by = Vector::direction(by);
-    direction * by.x + direction.left() * by.y
+    direction * by.x + direction.rotated_left() * by.y
 }
 
-fn tail(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> Flat {
+fn tail(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> FlatPart {
     let [point, straight] = outward(builder, servo, neutral);
     // The left tail link points to the robot's left, the right one to its right.
-    let (_, hand) = at_end(servo);
-    let outward = turned(straight, if hand == 0 { -APART } else { APART });
+    let (_, hand) = end_and_hand(servo);
+    let outward = rotate(
+        straight,
+        if hand == 0 {
+            -TAIL_LINK_ANGLE
+        } else {
+            TAIL_LINK_ANGLE
+        },
+    );
     let half = builder.half_bar();
-    let wide = outward.left() * (half - 1.5);
-    let second = point - Vector::new(BACK, 0.0);
+    let wide = outward.rotated_left() * (half - 1.5);
+    let second = point - Vector::new(SECOND_SCREW_DISTANCE, 0.0);
     let corners = [point + wide, point - wide, point + outward * (length - 1.5)];
     let add = vec![Shape::bar(second, point, half), Shape::hull(&corners, 1.5)];
     (add, vec![builder.hole(point)])
 }
 
-fn head(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> Flat {
+fn head(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> FlatPart {
     /// Radius of the corners, mm.
     const ROUND: f64 = 7.0;
     /// Radius of an eye, mm.
     const EYE: f64 = 2.5;
     let [point, way] = outward(builder, servo, neutral);
-    let at = |ahead: f64, left: f64| point + way * ahead + way.left() * left;
-    let second = point - Vector::new(BACK, 0.0);
+    let at = |ahead: f64, left: f64| point + way * ahead + way.rotated_left() * left;
+    let second = point - Vector::new(SECOND_SCREW_DISTANCE, 0.0);
     let wide = 0.24 * length;
     let [cheek, neck] = [0.34 * length, -0.1 * length];
     let snout = (length - ROUND, 0.0);
@@ -139,31 +146,34 @@ fn head(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> Fla
 }
 
 /// The position of the second screw in a coupler's frame.
-fn second(builder: &Builder, servo: usize) -> Vector {
-    Vector::new(coupler_length(builder.robot, servo) - BACK, 0.0)
+fn second_screw_position(builder: &Builder, servo: usize) -> Vector {
+    Vector::new(
+        coupler_length(builder.robot, servo) - SECOND_SCREW_DISTANCE,
+        0.0,
+    )
 }
 
-fn add_on_upper_link(builder: &mut Builder, servo: usize, name: &str, (add, mut cut): Flat) {
-    let low = builder.stack.upper[1];
-    cut.push(builder.hole(second(builder, servo)));
-    let z = [low, low + THICK];
-    builder.printed(name, Mount::Coupler(servo), [Prism::new(add, cut, z)]);
+fn add_on_upper_link(builder: &mut Builder, servo: usize, name: &str, (add, mut cut): FlatPart) {
+    let low = builder.stack.upper_coupler[1];
+    cut.push(builder.hole(second_screw_position(builder, servo)));
+    let z = [low, low + THICKNESS];
+    builder.add_printed(name, Mount::Coupler(servo), [Prism::new(add, cut, z)]);
     add_screw(builder, name, servo, z[1]);
 }
 
-fn add_under_lower_link(builder: &mut Builder, servo: usize, (add, mut cut): Flat) {
-    let high = builder.stack.lower[0];
-    cut.push(builder.thread(second(builder, servo)));
-    let z = [high - THICK, high];
+fn add_under_lower_link(builder: &mut Builder, servo: usize, (add, mut cut): FlatPart) {
+    let high = builder.stack.lower_coupler[0];
+    cut.push(builder.thread(second_screw_position(builder, servo)));
+    let z = [high - THICKNESS, high];
     let name = format!("tail {}", names(servo).0);
-    builder.printed(&name, Mount::Coupler(servo), [Prism::new(add, cut, z)]);
+    builder.add_printed(&name, Mount::Coupler(servo), [Prism::new(add, cut, z)]);
     // The upper coupler turns over the screw's head, which therefore is sunk.
-    let seat = builder.stack.lower[1] - builder.parts.screw.head_height - PLAY;
+    let seat = builder.stack.lower_coupler[1] - builder.parts.screw.head_height - PLAY;
     add_screw(builder, &name, servo, seat);
 }
 
 fn add_screw(builder: &mut Builder, of: &str, servo: usize, head: f64) {
-    let position = second(builder, servo);
+    let position = second_screw_position(builder, servo);
     let bolt = Bolt::new(of, Mount::Coupler(servo), position, head, Direction::Down);
-    builder.screw(&bolt, SCREW);
+    builder.add_screw(&bolt, SCREW);
 }

@@ -13,7 +13,7 @@ use crate::layers::body::{Mount, Prism};
 use crate::layers::shape::Shape;
 
 /// Offset of sleeve and rod from the line of the pins, outward, mm.
-pub const BESIDE: f64 = 9.0;
+pub const ROD_OFFSET: f64 = 9.0;
 /// Width of a rod, mm.
 pub(crate) const ROD: f64 = 6.0;
 /// The least length of the rod inside its sleeve, mm.
@@ -39,7 +39,7 @@ impl SliderLengths {
         Self {
             sleeve,
             rod: longest - sleeve + OVERLAP,
-            beside: side.sign() * BESIDE,
+            beside: side.sign() * ROD_OFFSET,
         }
     }
 }
@@ -68,7 +68,7 @@ fn add_sleeve(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
     let open = Shape::rectangle(middle, size, 0.0);
     let eye = [Shape::disc(pin, half), arm, case.clone()];
     let hole = builder.hole(pin);
-    let (low, top) = (stack.sleeve[0], stack.lower[1]);
+    let (low, top) = (stack.sleeve[0], stack.lower_coupler[1]);
     let [begin, end] = stack.bore;
     let mut prisms = vec![
         Prism::new(eye.clone(), [hole.clone()], [low, begin]),
@@ -77,7 +77,7 @@ fn add_sleeve(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
         Prism::solid([case], [end, stack.sleeve[1]]),
     ];
     prisms.retain(Prism::has_height);
-    builder.printed(format!("sleeve {side}"), Mount::Sleeve(side), prisms);
+    builder.add_printed(format!("sleeve {side}"), Mount::Sleeve(side), prisms);
     builder.allow_contact(&[format!("rod {side}")]);
 }
 
@@ -90,23 +90,23 @@ fn add_rod(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
     let bend = Shape::bar(pin, Vector::new(1.0, lengths.beside), half - 0.02);
     let add = [Shape::disc(pin, half), bend, bar];
     let prism = Prism::new(add, [builder.hole(pin)], builder.stack.rod);
-    builder.printed(format!("rod {side}"), Mount::Rod(side), [prism]);
+    builder.add_printed(format!("rod {side}"), Mount::Rod(side), [prism]);
 }
 
 fn add_pins(builder: &mut Builder, side: Side) {
     let [front, rear] = side.servos();
     let stack = builder.stack;
     let layout = builder.layout;
-    let arm = |servo: usize| Vector::new(0.0, layout.hand[servo] * layout.arm[servo]);
+    let arm = |servo: usize| Vector::new(0.0, layout.arm_side[servo] * layout.arm[servo]);
     let [sleeve, rod] = ["sleeve", "rod"].map(|part| format!("{part} {side}"));
     let name = format!("arm {}", names(rear).0);
     let mount = Mount::Link(rear);
-    builder.held_joint(&name, mount, arm(rear), stack.lower[1], &[&sleeve]);
+    builder.add_held_joint(&name, mount, arm(rear), stack.lower_coupler[1], &[&sleeve]);
     let (name, _) = names(front);
     let (at, mount) = (arm(front), Mount::Link(front));
     let under = [stack.link[1], stack.rod[0]];
-    builder.spacer(format!("arm spacer {name}"), mount, at, under, &[&rod]);
-    builder.held_joint(&format!("arm {name}"), mount, at, stack.rod[1], &[&rod]);
+    builder.add_spacer(format!("arm spacer {name}"), mount, at, under, &[&rod]);
+    builder.add_held_joint(&format!("arm {name}"), mount, at, stack.rod[1], &[&rod]);
 }
 
 /// The shortest and the longest distance between a slider's pins, mm.

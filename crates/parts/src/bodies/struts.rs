@@ -22,9 +22,9 @@ use crate::layers::shape::Shape;
 
 pub fn add(builder: &mut Builder) {
     for servo in 0..4 {
-        let strut = body(builder, servo, builder.slotted());
+        let strut = body(builder, servo, builder.has_slotted_struts());
         builder.bodies.push(strut);
-        if builder.slotted() {
+        if builder.has_slotted_struts() {
             add_spring(builder, servo);
         }
     }
@@ -33,7 +33,7 @@ pub fn add(builder: &mut Builder) {
 /// The struts of the other kind, which can replace the robot's own.
 pub fn alternatives(builder: &Builder) -> Vec<Body> {
     (0..4)
-        .map(|servo| body(builder, servo, !builder.slotted()))
+        .map(|servo| body(builder, servo, !builder.has_slotted_struts()))
         .collect()
 }
 
@@ -45,9 +45,9 @@ fn body(builder: &Builder, servo: usize, is_slotted: bool) -> Body {
         mount: Mount::Strut(servo),
         prisms: match is_slotted {
             true => with_slot(builder, servo),
-            false => vec![rigid(builder, servo)],
+            false => vec![rigid_prism(builder, servo)],
         },
-        meets: vec![format!("crank {leg}")],
+        allowed_contacts: vec![format!("crank {leg}")],
     }
 }
 
@@ -75,7 +75,7 @@ fn with_slot(builder: &Builder, servo: usize) -> Vec<Prism> {
     ]
 }
 
-fn rigid(builder: &Builder, servo: usize) -> Prism {
+fn rigid_prism(builder: &Builder, servo: usize) -> Prism {
     let [from, to] = [at(0.0), at(builder.layout.legs[servo].strut_length)];
     let bar = Shape::bar(from, to, channel(builder) + builder.parts.wall);
     let holes = [from, to].map(|at| builder.hole(at));
@@ -89,11 +89,14 @@ fn add_spring(builder: &mut Builder, servo: usize) {
     let radius = parts.spring.outer / 2.0;
     // Each hook lies around the far side of its screw; the coil is between both hooks.
     let hook = parts.spring.outer - 2.0 * parts.spring.wire;
-    let size = Vector::new(builder.robot.hung() - 2.0 * hook, parts.spring.outer);
+    let size = Vector::new(
+        builder.robot.mounted_spring_length() - 2.0 * hook,
+        parts.spring.outer,
+    );
     let coil = Shape::rectangle(at(length / 2.0), size, 0.0);
     let coil = Prism::solid([coil], [stack.coil - radius, stack.coil + radius]);
     let (spring, mount) = (format!("spring {leg}"), Mount::Strut(servo));
-    builder.body(spring, Kind::Spring, mount, [coil]);
+    builder.add_body(spring, Kind::Spring, mount, [coil]);
     // The screw heads lie over the hooks and reach to the coil's ends.
     builder.allow_contact(&[
         format!("screw leg anchor {leg}"),

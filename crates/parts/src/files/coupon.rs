@@ -57,8 +57,8 @@ pub fn coupon(parts: &Parts) -> [Part; 2] {
         below.extend(through);
         floor.push(Shape::disc(at(x, pocket), horn.hub / 2.0 + fit));
         let upright = Placement {
-            at: at(x, pocket),
-            turn: at(0.0, 1.0),
+            origin: at(x, pocket),
+            x_axis: at(0.0, 1.0),
         };
         let arm = arm(horn, POCKET * fit).into_iter();
         below.extend(arm.map(|shape| shape.placed(&upright)));

@@ -7,13 +7,13 @@ use std::collections::BTreeMap;
 
 use lizard_kinematics::Vector;
 
-use crate::files::solid::{Face, Solid, Surface, progress};
-use crate::layers::outline::Side;
+use crate::files::solid::{Face, Solid, Surface, position_along};
+use crate::layers::outline::Segment;
 
 /// Largest distance between a chord and its arc, mm.
-const CHORD: f64 = 0.01;
+const MAX_CHORD_ERROR: f64 = 0.01;
 /// Largest angle of an arc that a chord spans, rad: at least 36 chords to a circle.
-const ANGLE: f64 = std::f64::consts::TAU / 36.0;
+const MAX_CHORD_ANGLE: f64 = std::f64::consts::TAU / 36.0;
 
 /// A surface of triangles, counter-clockwise seen from outside.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -33,11 +33,11 @@ impl Mesh {
         let mut maker = MeshBuilder {
             solid,
             mesh: Self::default(),
-            at: BTreeMap::new(),
+            corner_indices: BTreeMap::new(),
             lines: Vec::new(),
         };
         for edge in 0..solid.edges.len() {
-            let line = maker.line(edge);
+            let line = maker.divide_edge(edge);
             maker.lines.push(line);
         }
         for face in &solid.faces {
@@ -78,7 +78,7 @@ struct MeshBuilder<'a> {
     solid: &'a Solid,
     mesh: Mesh,
     /// Index in the mesh of each corner, by its point and its height.
-    at: BTreeMap<(usize, usize), usize>,
+    corner_indices: BTreeMap<(usize, usize), usize>,
     /// The corners of each edge, from its first end point to its second.
     lines: Vec<Vec<usize>>,
 }
@@ -87,24 +87,27 @@ impl MeshBuilder<'_> {
     fn corner(&mut self, (point, level): (usize, usize)) -> usize {
         let (at, z) = (self.solid.points[point], self.solid.heights[level]);
         let corners = &mut self.mesh.corners;
-        *self.at.entry((point, level)).or_insert_with(|| {
-            corners.push([at.x, at.y, z]);
-            corners.len() - 1
-        })
+        *self
+            .corner_indices
+            .entry((point, level))
+            .or_insert_with(|| {
+                corners.push([at.x, at.y, z]);
+                corners.len() - 1
+            })
     }
 
-    fn line(&mut self, edge: usize) -> Vec<usize> {
+    fn divide_edge(&mut self, edge: usize) -> Vec<usize> {
         let edge = self.solid.edges[edge];
         let [from, to] = edge.ends;
         let (first, last) = (self.corner(from), self.corner(to));
-        let side = Side {
+        let side = Segment {
             from: self.solid.points[from.0],
             bulge: edge.bulge,
         };
         let mut line = vec![first];
         let count = |radius: f64, angle: f64| {
-            let chord = 2.0 * libm::acos((1.0 - CHORD / radius).clamp(-1.0, 1.0));
-            (angle / chord.min(ANGLE)).ceil() as u32
+            let chord = 2.0 * libm::acos((1.0 - MAX_CHORD_ERROR / radius).clamp(-1.0, 1.0));
+            (angle / chord.min(MAX_CHORD_ANGLE)).ceil() as u32
         };
         let z = self.solid.heights[from.1];
         for at in side.along(self.solid.points[to.0], count) {
@@ -156,11 +159,11 @@ impl MeshBuilder<'_> {
             }
         };
         let mut triangles: Vec<_> = found.chunks_exact(3).map(triangle).collect();
-        fill(&mut triangles, &known);
+        split_at_corners(&mut triangles, &known);
         self.mesh.triangles.extend(triangles);
     }
 
-    fn add_wall(&mut self, face: &Face, side: Side, end: Vector) {
+    fn add_wall(&mut self, face: &Face, side: Segment, end: Vector) {
         let level = |edge: usize| self.solid.edges[edge].ends.map(|(_, level)| level);
         let edges = &face.loops[0];
         let upright = |&(edge, _): &(usize, bool)| {
@@ -169,13 +172,13 @@ impl MeshBuilder<'_> {
         };
         let first = edges.iter().position(upright).unwrap_or(0);
         let mut low = self.trail(&edges[..first]);
-        low.push(self.end(edges[first], false));
+        low.push(self.first_or_last_corner(edges[first], false));
         let mut high = self.trail(&edges[first + 1..edges.len() - 1]);
-        high.push(self.end(edges[edges.len() - 1], false));
+        high.push(self.first_or_last_corner(edges[edges.len() - 1], false));
         high.reverse();
         let along = |&corner: &usize| {
             let [x, y, _] = self.mesh.corners[corner];
-            progress(side, end, Vector::new(x, y))
+            position_along(side, end, Vector::new(x, y))
         };
         let distances = |chain: &[usize]| {
             let mut ways: Vec<f64> = chain.iter().map(along).collect();
@@ -186,9 +189,9 @@ impl MeshBuilder<'_> {
         let (mut i, mut j) = (0, 0);
         let mut triangles = Vec::new();
         while i + 1 < low.len() || j + 1 < high.len() {
-            let goes_low =
+            let is_low_next =
                 j + 1 == high.len() || (i + 1 < low.len() && low_ways[i + 1] <= high_ways[j + 1]);
-            if goes_low {
+            if is_low_next {
                 triangles.push([low[i], low[i + 1], high[j]]);
                 i += 1;
             } else {
@@ -200,7 +203,7 @@ impl MeshBuilder<'_> {
     }
 
     /// The corner at which an edge of a loop begins or, if `is_last`, ends.
-    fn end(&self, (edge, forward): (usize, bool), is_last: bool) -> usize {
+    fn first_or_last_corner(&self, (edge, forward): (usize, bool), is_last: bool) -> usize {
         let line = &self.lines[edge];
         if forward == is_last {
             line[line.len() - 1]
@@ -212,13 +215,13 @@ impl MeshBuilder<'_> {
 
 /// Divides triangles at the corners that lie on their sides. The triangulation leaves out points on a straight
 /// line, but walls and other triangles have corners at these points.
-fn fill(triangles: &mut Vec<[usize; 3]>, corners: &[(usize, Vector)]) {
+fn split_at_corners(triangles: &mut Vec<[usize; 3]>, corners: &[(usize, Vector)]) {
     let mut done = 0;
     while done < triangles.len() {
         let triangle = triangles[done];
         let found = (0..3).find_map(|i| {
             let [a, b, c] = [0, 1, 2].map(|k| triangle[(i + k) % 3]);
-            let within = between(corners, a, b);
+            let within = corners_between(corners, a, b);
             (!within.is_empty()).then_some((a, within, b, c))
         });
         let Some((a, within, b, c)) = found else {
@@ -236,7 +239,7 @@ fn fill(triangles: &mut Vec<[usize; 3]>, corners: &[(usize, Vector)]) {
 }
 
 /// The corners on the line between two others, in order; the two are not included.
-fn between(corners: &[(usize, Vector)], a: usize, b: usize) -> Vec<usize> {
+fn corners_between(corners: &[(usize, Vector)], a: usize, b: usize) -> Vec<usize> {
     let find = |which: usize| corners.iter().find(|(corner, _)| *corner == which);
     let (Some(&(_, from)), Some(&(_, to))) = (find(a), find(b)) else {
         return Vec::new();

@@ -13,7 +13,7 @@ pub(crate) mod stl;
 pub(crate) mod svg;
 
 use crate::part::Part;
-use crate::unfit::Unfit;
+use crate::unfit::BuildProblem;
 use mesh::Mesh;
 use solid::Solid;
 
@@ -40,15 +40,15 @@ impl File {
 ///
 /// # Errors
 /// Returns [`Unfit::Surface`] for a part whose layers do not form a closed surface.
-pub fn part_files(part: &Part, kerf: f64) -> Result<Vec<File>, Unfit> {
+pub fn part_files(part: &Part, kerf: f64) -> Result<Vec<File>, BuildProblem> {
     let solid = Solid::of(&part.prisms);
-    let printed = Solid::of(&part.printed().0);
+    let printed = Solid::of(&part.printed_layers().0);
     let mesh = match printed.is_closed() {
         true => Mesh::of(&printed),
-        false => return Err(Unfit::Surface(part.name.clone())),
+        false => return Err(BuildProblem::Surface(part.name.clone())),
     };
     if !solid.is_closed() || !mesh.is_closed() {
-        return Err(Unfit::Surface(part.name.clone()));
+        return Err(BuildProblem::Surface(part.name.clone()));
     }
     let name = part.file();
     let step = step::step(&part.name, &solid);

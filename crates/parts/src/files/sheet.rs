@@ -105,7 +105,7 @@ fn is_open(outline: &Outline, hole: &Loop) -> bool {
     let middle = sum * (1.0 / hole.sides.len() as f64);
     // The probed points lie slightly within the line, so that a hole of the same size counts as open.
     let within = |point: Vector| middle + (point - middle) * 0.999;
-    let ends = hole.ends();
+    let ends = hole.sides_with_end_points();
     let mut probes = ends.flat_map(|(side, to)| [side.from, side.middle(to)]);
     probes.all(|point| !outline.contains(within(point)))
 }
@@ -113,8 +113,12 @@ fn is_open(outline: &Outline, hole: &Loop) -> bool {
 /// The smallest and the largest x and y of a sheet, with the arcs divided finely, mm.
 pub fn extent(sheet: &Sheet) -> [Vector; 2] {
     let lines = sheet.layers.iter().flat_map(|layer| &layer.loops);
-    bounds(lines.flat_map(Loop::ends).flat_map(|(side, to)| {
-        let arc = side.along(to, |_, _| 16);
-        std::iter::once(side.from).chain(arc)
-    }))
+    bounds(
+        lines
+            .flat_map(Loop::sides_with_end_points)
+            .flat_map(|(side, to)| {
+                let arc = side.along(to, |_, _| 16);
+                std::iter::once(side.from).chain(arc)
+            }),
+    )
 }

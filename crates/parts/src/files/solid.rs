@@ -11,7 +11,7 @@ use cavalier_contours::polyline::{PlineSegIntr, PlineVertex, pline_seg_intr};
 use lizard_kinematics::Vector;
 
 use crate::layers::body::Prism;
-use crate::layers::outline::{self, Loop, Outline, SAME_POINT_MM, Side};
+use crate::layers::outline::{self, Loop, Outline, SAME_POINT_MM, Segment};
 
 /// The surface of a part, as edges and faces.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -55,10 +55,10 @@ pub enum Surface {
     /// A horizontal plane, by the index of its height, seen from below.
     Bottom(usize),
     /// A wall along a side of an outline; the vector is the side's end point.
-    Wall(Side, Vector),
+    Wall(Segment, Vector),
     /// A leaning wall along a side of an outline: the side, its end point, the index of its lower height, and the
     /// arc's radius at the next height, mm.
-    Slope(Side, Vector, usize, f64),
+    Slope(Segment, Vector, usize, f64),
 }
 
 /// A piece of an outline at a height.
@@ -75,7 +75,7 @@ impl Solid {
     /// The surface of a stack of layers, from the lowest to the highest.
     pub fn of(prisms: &[Prism]) -> Self {
         let cut_at = |share| {
-            let cut = |prism: &Prism| Outline::of(&prism.cut_at(share));
+            let cut = |prism: &Prism| Outline::of(&prism.cross_section(share));
             prisms.iter().map(cut).collect::<Vec<_>>()
         };
         let (bottoms, tops) = (cut_at(0.0), cut_at(1.0));
@@ -88,8 +88,8 @@ impl Solid {
         for level in 0..=prisms.len() {
             let lower = level.checked_sub(1).map_or(&nothing, |k| &tops[k]);
             let upper = bottoms.get(level).unwrap_or(&nothing);
-            let lower_pieces = builder.pieces(level, lower, upper);
-            let upper_pieces = builder.pieces(level, upper, lower);
+            let lower_pieces = builder.split_outline(level, lower, upper);
+            let upper_pieces = builder.split_outline(level, upper, lower);
             builder.add_flats(level, (lower, &lower_pieces), (upper, &upper_pieces));
             if let Some(layer) = level.checked_sub(1) {
                 let outlines = [&bottoms[layer], &tops[layer]];
@@ -126,7 +126,7 @@ struct SolidBuilder {
 }
 
 fn find_or_add(points: &mut Vec<Vector>, point: Vector) -> usize {
-    let near = |other: &Vector| (*other - point).square() < SAME_POINT_MM * SAME_POINT_MM;
+    let near = |other: &Vector| (*other - point).length_squared() < SAME_POINT_MM * SAME_POINT_MM;
     points.iter().position(near).unwrap_or_else(|| {
         points.push(point);
         points.len() - 1
@@ -135,22 +135,34 @@ fn find_or_add(points: &mut Vec<Vector>, point: Vector) -> usize {
 
 impl SolidBuilder {
     /// Divides each side of an outline into pieces at its intersections with another outline.
-    fn pieces(&mut self, level: usize, outline: &Outline, other: &Outline) -> Vec<Vec<Piece>> {
-        let others: Vec<_> = other.loops().flat_map(Loop::ends).collect();
-        let sides: Vec<_> = outline.loops().flat_map(Loop::ends).collect();
+    fn split_outline(
+        &mut self,
+        level: usize,
+        outline: &Outline,
+        other: &Outline,
+    ) -> Vec<Vec<Piece>> {
+        let others: Vec<_> = other
+            .loops()
+            .flat_map(Loop::sides_with_end_points)
+            .collect();
+        let sides: Vec<_> = outline
+            .loops()
+            .flat_map(Loop::sides_with_end_points)
+            .collect();
         sides
             .into_iter()
             .map(|(side, to)| {
                 let mut cuts = vec![side.from, to];
                 for (across, end) in &others {
-                    add_meetings(side, to, *across, *end, &mut cuts);
+                    add_intersections(side, to, *across, *end, &mut cuts);
                 }
                 let points = &mut self.solid.points;
-                let progress_and_index = |cut| (progress(side, to, cut), find_or_add(points, cut));
+                let progress_and_index =
+                    |cut| (position_along(side, to, cut), find_or_add(points, cut));
                 let mut along: Vec<(f64, usize)> =
                     cuts.into_iter().map(progress_and_index).collect();
                 along[0].0 = 0.0;
-                along[1].0 = progress(side, to, to).max(SAME_POINT_MM);
+                along[1].0 = position_along(side, to, to).max(SAME_POINT_MM);
                 along.sort_by(|a, b| a.0.total_cmp(&b.0));
                 along.dedup_by_key(|(_, point)| *point);
                 let is_whole = along.len() == 2;
@@ -169,7 +181,7 @@ impl SolidBuilder {
 
     fn piece(&mut self, level: usize, from: usize, to: usize, bulge: f64) -> Piece {
         let points = &self.solid.points;
-        let side = Side {
+        let side = Segment {
             from: points[from],
             bulge,
         };
@@ -275,7 +287,7 @@ impl SolidBuilder {
     fn loop_of(&self, trail: &[Piece]) -> Loop {
         let side = |piece: &Piece| {
             let bulge = self.solid.edges[piece.edge].bulge;
-            Side {
+            Segment {
                 from: self.solid.points[piece.from],
                 bulge: if piece.is_forward { bulge } else { -bulge },
             }
@@ -293,7 +305,7 @@ impl SolidBuilder {
         high: &[Vec<Piece>],
     ) {
         let sides = |outline: &Outline| {
-            let ends = outline.loops().flat_map(Loop::ends);
+            let ends = outline.loops().flat_map(Loop::sides_with_end_points);
             ends.collect::<Vec<_>>()
         };
         let sides = sides(bottom).into_iter().zip(sides(top));
@@ -304,13 +316,13 @@ impl SolidBuilder {
             };
             let uprights = low.iter().map(|piece| (piece.edge, piece.is_forward));
             let mut edges: Vec<_> = uprights.collect();
-            edges.push((self.upright([to, high_to], level), true));
+            edges.push((self.find_or_add_upright([to, high_to], level), true));
             edges.extend(
                 high.iter()
                     .rev()
                     .map(|piece| (piece.edge, !piece.is_forward)),
             );
-            edges.push((self.upright([from, high_from], level), false));
+            edges.push((self.find_or_add_upright([from, high_from], level), false));
             let surface = match above.arc(above_end) {
                 Some((_, radius)) if from != high_from => {
                     Surface::Slope(side, end, level - 1, radius)
@@ -324,7 +336,7 @@ impl SolidBuilder {
 
     /// Returns the edge from a point at the previous height to a point at this one, upright or along a slope; adds
     /// the edge if it is new.
-    fn upright(&mut self, [low, high]: [usize; 2], level: usize) -> usize {
+    fn find_or_add_upright(&mut self, [low, high]: [usize; 2], level: usize) -> usize {
         let edges = &mut self.solid.edges;
         *self
             .upright_of
@@ -340,7 +352,7 @@ impl SolidBuilder {
 }
 
 /// The distance of a point from the start of a side, measured along the side: mm, or rad on an arc.
-pub(crate) fn progress(side: Side, to: Vector, point: Vector) -> f64 {
+pub(crate) fn position_along(side: Segment, to: Vector, point: Vector) -> f64 {
     let Some((centre, _)) = side.arc(to) else {
         return (point - side.from).length();
     };
@@ -363,7 +375,13 @@ fn bulge_of(angle: f64, like: f64) -> f64 {
 }
 
 /// Adds the points in which two sides intersect, or between which they overlap.
-fn add_meetings(a: Side, a_end: Vector, b: Side, b_end: Vector, meetings: &mut Vec<Vector>) {
+fn add_intersections(
+    a: Segment,
+    a_end: Vector,
+    b: Segment,
+    b_end: Vector,
+    meetings: &mut Vec<Vector>,
+) {
     let end = |position: Vector| PlineVertex::new(position.x, position.y, 0.0);
     let points = match pline_seg_intr(
         a.vertex(),

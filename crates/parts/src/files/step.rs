@@ -8,12 +8,12 @@ use std::fmt::Write;
 use lizard_kinematics::Vector;
 
 use crate::files::solid::{Face, Solid, Surface};
-use crate::layers::outline::Side;
+use crate::layers::outline::Segment;
 
 /// The text of a STEP file.
 pub fn step(name: &str, solid: &Solid) -> String {
     let mut file = StepWriter::default();
-    let solid = file.solid(name, solid);
+    let solid = file.add_solid(name, solid);
     file.add_product(name, solid);
     let data = file.text;
     format!(
@@ -37,7 +37,7 @@ struct StepWriter {
 
 /// A number in the format's notation: with a point, and without an exponent, which some
 /// readers misread.
-fn real(number: f64) -> String {
+fn format_real(number: f64) -> String {
     let text = format!("{number:.9}");
     let text = text.trim_end_matches('0');
     if text == "-0." { "0." } else { text }.to_owned()
@@ -55,19 +55,24 @@ impl StepWriter {
         self.last_id
     }
 
-    fn triple(&mut self, kind: &str, [x, y, z]: [f64; 3]) -> usize {
-        self.add(&format!("{kind}('',({},{},{}))", real(x), real(y), real(z)))
+    fn add_triple(&mut self, kind: &str, [x, y, z]: [f64; 3]) -> usize {
+        self.add(&format!(
+            "{kind}('',({},{},{}))",
+            format_real(x),
+            format_real(y),
+            format_real(z)
+        ))
     }
 
     /// A frame by its origin, its z axis and its x axis.
-    fn frame(&mut self, origin: [f64; 3], z: [f64; 3], x: [f64; 3]) -> usize {
-        let origin = self.triple("CARTESIAN_POINT", origin);
-        let z = self.triple("DIRECTION", z);
-        let x = self.triple("DIRECTION", x);
+    fn add_frame(&mut self, origin: [f64; 3], z: [f64; 3], x: [f64; 3]) -> usize {
+        let origin = self.add_triple("CARTESIAN_POINT", origin);
+        let z = self.add_triple("DIRECTION", z);
+        let x = self.add_triple("DIRECTION", x);
         self.add(&format!("AXIS2_PLACEMENT_3D('',#{origin},#{z},#{x})"))
     }
 
-    fn solid(&mut self, name: &str, solid: &Solid) -> usize {
+    fn add_solid(&mut self, name: &str, solid: &Solid) -> usize {
         let mut corners = std::collections::BTreeMap::new();
         let mut edges = Vec::new();
         for edge in &solid.edges {
@@ -77,23 +82,23 @@ impl StepWriter {
             });
             let [from, to] = [0, 1].map(|i| {
                 *corners.entry(edge.ends[i]).or_insert_with(|| {
-                    let at = self.triple("CARTESIAN_POINT", ends[i]);
+                    let at = self.add_triple("CARTESIAN_POINT", ends[i]);
                     self.add(&format!("VERTEX_POINT('',#{at})"))
                 })
             });
-            let curve = self.curve(ends, edge.bulge);
+            let curve = self.add_curve(ends, edge.bulge);
             edges.push(self.add(&format!("EDGE_CURVE('',#{from},#{to},#{curve},.T.)")));
         }
         let faces = solid
             .faces
             .iter()
-            .map(|face| self.face(solid, face, &edges));
+            .map(|face| self.add_face(solid, face, &edges));
         let faces: Vec<_> = faces.collect();
         let shell = self.add(&format!("CLOSED_SHELL('',{})", list(&faces)));
         self.add(&format!("MANIFOLD_SOLID_BREP('{name}',#{shell})"))
     }
 
-    fn face(&mut self, solid: &Solid, face: &Face, edges: &[usize]) -> usize {
+    fn add_face(&mut self, solid: &Solid, face: &Face, edges: &[usize]) -> usize {
         let logical = |value: bool| if value { "T" } else { "F" };
         let mut bounds = Vec::new();
         for edge_loop in &face.loops {
@@ -109,31 +114,31 @@ impl StepWriter {
             };
             bounds.push(self.add(&format!("{kind}('',#{edge_loop},.T.)")));
         }
-        let (surface, sense) = self.surface(solid, face.surface);
+        let (surface, sense) = self.add_surface(solid, face.surface);
         let (bounds, sense) = (list(&bounds), logical(sense));
         self.add(&format!("ADVANCED_FACE('',{bounds},#{surface},.{sense}.)"))
     }
 
-    fn curve(&mut self, [from, to]: [[f64; 3]; 2], bulge: f64) -> usize {
-        let side = Side {
+    fn add_curve(&mut self, [from, to]: [[f64; 3]; 2], bulge: f64) -> usize {
+        let side = Segment {
             from: Vector::new(from[0], from[1]),
             bulge,
         };
         if let Some((centre, radius)) = side.arc(Vector::new(to[0], to[1])) {
             let (at, up) = ([centre.x, centre.y, from[2]], [0.0, 0.0, bulge.signum()]);
-            let frame = self.frame(at, up, [1.0, 0.0, 0.0]);
-            return self.add(&format!("CIRCLE('',#{frame},{})", real(radius)));
+            let frame = self.add_frame(at, up, [1.0, 0.0, 0.0]);
+            return self.add(&format!("CIRCLE('',#{frame},{})", format_real(radius)));
         }
         let direction = [0, 1, 2].map(|i| to[i] - from[i]);
         let length = direction.iter().map(|part| part * part).sum::<f64>().sqrt();
-        let origin = self.triple("CARTESIAN_POINT", from);
-        let direction = self.triple("DIRECTION", direction.map(|part| part / length));
+        let origin = self.add_triple("CARTESIAN_POINT", from);
+        let direction = self.add_triple("DIRECTION", direction.map(|part| part / length));
         let vector = self.add(&format!("VECTOR('',#{direction},1.)"));
         self.add(&format!("LINE('',#{origin},#{vector})"))
     }
 
     /// Adds the surface of a face. The bool is true if the surface's normal points out of the part.
-    fn surface(&mut self, solid: &Solid, surface: Surface) -> (usize, bool) {
+    fn add_surface(&mut self, solid: &Solid, surface: Surface) -> (usize, bool) {
         match surface {
             Surface::Top(level) | Surface::Bottom(level) => {
                 let up = match surface {
@@ -141,7 +146,7 @@ impl StepWriter {
                     _ => -1.0,
                 };
                 let at = [0.0, 0.0, solid.heights[level]];
-                let frame = self.frame(at, [0.0, 0.0, up], [1.0, 0.0, 0.0]);
+                let frame = self.add_frame(at, [0.0, 0.0, up], [1.0, 0.0, 0.0]);
                 (self.add(&format!("PLANE('',#{frame})")), true)
             }
             Surface::Slope(side, end, level, above) => {
@@ -151,24 +156,25 @@ impl StepWriter {
                 // down.
                 let narrows = radius > above;
                 let up = if narrows { -1.0 } else { 1.0 };
-                let frame = self.frame([centre.x, centre.y, low], [0.0, 0.0, up], [1.0, 0.0, 0.0]);
+                let frame =
+                    self.add_frame([centre.x, centre.y, low], [0.0, 0.0, up], [1.0, 0.0, 0.0]);
                 let angle = libm::atan((above - radius).abs() / (high - low));
-                let (radius, angle) = (real(radius), real(angle));
+                let (radius, angle) = (format_real(radius), format_real(angle));
                 let cone = format!("CONICAL_SURFACE('',#{frame},{radius},{angle})");
                 (self.add(&cone), side.bulge > 0.0)
             }
             Surface::Wall(side, end) => match side.arc(end) {
                 Some((centre, radius)) => {
                     let at = [centre.x, centre.y, 0.0];
-                    let frame = self.frame(at, [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
-                    let round = format!("CYLINDRICAL_SURFACE('',#{frame},{})", real(radius));
+                    let frame = self.add_frame(at, [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
+                    let round = format!("CYLINDRICAL_SURFACE('',#{frame},{})", format_real(radius));
                     (self.add(&round), side.bulge > 0.0)
                 }
                 None => {
                     let along = (end - side.from) * (1.0 / (end - side.from).length());
-                    let [at, out, along] =
-                        [side.from, along.right(), along].map(|point| [point.x, point.y, 0.0]);
-                    let frame = self.frame(at, out, along);
+                    let [at, out, along] = [side.from, along.rotated_right(), along]
+                        .map(|point| [point.x, point.y, 0.0]);
+                    let frame = self.add_frame(at, out, along);
                     (self.add(&format!("PLANE('',#{frame})")), true)
                 }
             },
@@ -191,7 +197,7 @@ impl StepWriter {
             self.add(&entity);
         }
         let (shape, space) = (context + PRODUCT_SHAPE, self.last_id);
-        let frame = self.frame([0.0; 3], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
+        let frame = self.add_frame([0.0; 3], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
         let parts = format!("(#{frame},#{solid})");
         let body = self.add(&format!(
             "ADVANCED_BREP_SHAPE_REPRESENTATION('',{parts},#{space})"
@@ -216,7 +222,7 @@ mod tests {
             (1e-7, "0.0000001"),
             (138.590378, "138.590378"),
         ] {
-            assert_eq!(real(value), text);
+            assert_eq!(format_real(value), text);
         }
     }
 }

@@ -44,7 +44,7 @@ pub fn sheet_svg(sheet: &Sheet, kerf: f64) -> String {
 /// A loop as the data of a path.
 fn path(line: &Loop, page: impl Fn(Vector) -> (f64, f64)) -> String {
     let mut data = String::new();
-    for (number, (side, to)) in line.ends().enumerate() {
+    for (number, (side, to)) in line.sides_with_end_points().enumerate() {
         let (x, y) = page(side.from);
         if number == 0 {
             let _ = write!(data, "M{x:.6} {y:.6}");

@@ -9,7 +9,7 @@ use crate::layers::outline::bounds;
 /// Margin around the robot, pixels.
 const MARGIN: f64 = 12.0;
 /// Space for labels on each side of a picture, pixels.
-const BESIDE: f64 = 165.0;
+const LABEL_MARGIN: f64 = 165.0;
 /// Height of a line of a label, pixels.
 const LINE: f64 = 16.0;
 const FONT: &str = "font-family=\"sans-serif\" font-size=\"12\" fill=\"#111\"";
@@ -30,7 +30,7 @@ pub struct Label {
     pub text: String,
     /// True to write the text beside the picture with a line to the named point, as for names of parts; false
     /// to write it at the point.
-    pub beside: bool,
+    pub is_beside: bool,
 }
 
 /// The part of the drawing that is shown, mm, before it is scaled to pixels.
@@ -75,8 +75,8 @@ impl Ink {
     /// The picture as SVG, `width` pixels wide, with labels at their points on the page.
     pub(super) fn finish(self, width: f64, frame: &Frame, names: &[Name]) -> String {
         let (low, high) = (frame.low, frame.high);
-        let side = match names.iter().any(|(_, label)| label.beside) {
-            true => BESIDE,
+        let side = match names.iter().any(|(_, label)| label.is_beside) {
+            true => LABEL_MARGIN,
             false => 0.0,
         };
         let room = width - 2.0 * (MARGIN + side);
@@ -136,7 +136,7 @@ impl Ink {
         text.push_str("</g>\n");
         let page = |(x, y): (f64, f64)| ((x - low.0) * scale + x0, (y - low.1) * scale + MARGIN);
         let shown: Vec<_> = names.iter().filter(|(at, _)| frame.contains(*at)).collect();
-        for (at, Label { text: name, .. }) in shown.iter().filter(|(_, label)| !label.beside) {
+        for (at, Label { text: name, .. }) in shown.iter().filter(|(_, label)| !label.is_beside) {
             let (x, y) = page(*at);
             let _ = writeln!(
                 text,
@@ -146,7 +146,7 @@ impl Ink {
         }
         for left in [true, false] {
             let middle = width / 2.0;
-            let on_this_side = shown.iter().filter(|(_, label)| label.beside);
+            let on_this_side = shown.iter().filter(|(_, label)| label.is_beside);
             let places = on_this_side.map(|(at, label)| (page(*at), *label));
             let mut column: Vec<_> = places.filter(|((x, _), _)| (*x < middle) == left).collect();
             column.sort_by(|a, b| a.0.1.total_cmp(&b.0.1));
@@ -166,8 +166,8 @@ fn write_column(text: &mut String, column: &[Name], is_left: bool, width: f64, h
         let point = (y + 4.0).min(max).max(min);
         min = point + LINE;
         let (edge, end, anchor) = match is_left {
-            true => (8.0, BESIDE - 4.0, "start"),
-            false => (width - 8.0, width - BESIDE + 4.0, "end"),
+            true => (8.0, LABEL_MARGIN - 4.0, "start"),
+            false => (width - 8.0, width - LABEL_MARGIN + 4.0, "end"),
         };
         // The line begins about where the text ends.
         let words = 6.4 * label.text.chars().count() as f64;

@@ -64,17 +64,19 @@ pub fn names(
     pose: &Solution,
 ) -> Vec<Label> {
     let mut labels_by_name: BTreeMap<String, (f64, usize, Label)> = BTreeMap::new();
-    for PictureBody { body, lift, .. } in drawn.iter().filter(|drawn| !drawn.grey) {
+    for PictureBody { body, lift, .. } in drawn.iter().filter(|drawn| !drawn.is_grey) {
         let (Some(name), Some(prism)) = (display_name(body, parts), body.prisms.last()) else {
             continue;
         };
-        let at = assembly.place(body.mount, pose).map(prism.add[0].middle());
+        let at = assembly
+            .place(body.mount, pose)
+            .map(prism.filled_shapes[0].middle());
         let distance = (at - Vector::new(-60.0, 80.0)).length();
         let label = Label {
             at,
             z: (body.z()[0] + body.z()[1]) / 2.0 + lift,
             text: name.clone(),
-            beside: true,
+            is_beside: true,
         };
         let entry = labels_by_name
             .entry(name)
@@ -99,7 +101,7 @@ pub fn places(assembly: &Assembly, pose: &Solution) -> Vec<Label> {
         at: position,
         z: LINK_HEIGHT,
         text: text.to_owned(),
-        beside: false,
+        is_beside: false,
     };
     // The label is on the link and not at the shaft, which the board may hide.
     let on_link = |servo: usize| {

@@ -26,7 +26,7 @@ use crate::layers::roof::LAYER_MM;
 use crate::order::reach::AccessPose;
 use crate::order::steps::{ExtraView, Step, TurningPlace, steps};
 use crate::part::Part;
-use crate::unfit::Unfit;
+use crate::unfit::BuildProblem;
 
 /// Lift of new parts in the exploded pictures, mm.
 const LIFT: f64 = 45.0;
@@ -44,7 +44,7 @@ Print all parts as they lie, in layers of 0.2 mm, **without supports**. A slicer
 roof: that is a bridge of 6.4 mm, which needs none.";
 
 /// Title of the step in which pads are put on their screws.
-const BENCH: &str = "Legs, on the bench";
+const BENCH_TITLE: &str = "Legs, on the bench";
 /// Text added to the step of the pads for pads with a strip.
 const STRIP: &str = " Before you press the heads in, glue a strip along each dome, from its notch to the other side. The tips of its hairs or \
 bristles point away from the notch; its front end is folded up and glued into the notch, so that no edge of the floor catches it. \
@@ -55,24 +55,24 @@ const LEVEL: &str = "Level the feet";
 const GRAIN: &str = " At last turn each pad on its screw until its grain is right: a finger glides smoothly over it \
 from head to tail. docs/gaits.md says more about pads with a grain.";
 /// Text added to the step that levels the feet, for pads with a strip.
-const TO_HEAD: &str =
+const NOTCH_TEXT: &str =
     " The notches of all four pads, LF, RF, RH and LH, then point straight to the head.";
 
 /// The guide as Markdown and HTML, with its pictures at a pose, usually neutral.
 ///
 /// # Errors
 /// Returns [`Unfit::Blocked`] for a screw that cannot be reached.
-pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<File>, Unfit> {
+pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<File>, BuildProblem> {
     let mut steps = steps(assembly.robot().drive().strut().is_some());
     let has_strip = assembly.robot().parts().strip > 0.0;
     for (title, words, is_meant) in [
-        (BENCH, STRIP, has_strip),
+        (BENCH_TITLE, STRIP, has_strip),
         (
             LEVEL,
             GRAIN,
             has_strip || assembly.robot().ground().ratio > 1.0,
         ),
-        (LEVEL, TO_HEAD, has_strip),
+        (LEVEL, NOTCH_TEXT, has_strip),
     ] {
         let step = steps.iter_mut().find(|step| step.title == title);
         let step = step.expect("a step with this title");
@@ -92,7 +92,7 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
     files.push(File::text("guide/robot.svg".to_owned(), robot));
     let mut text = format!(
         "# Building the robot\n\n![The robot](robot.svg)\n\n{INTRODUCTION}\n\n{}\n",
-        drilled(&parts)
+        drilling_text(&parts)
     );
     let _ = writeln!(text, "## What is needed\n\n{bill}");
     let mut before: Vec<&Body> = Vec::new();
@@ -111,7 +111,7 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
         let at_bench = step
             .stages
             .iter()
-            .any(|stage| stage.at == TurningPlace::Bench);
+            .any(|stage| stage.turning_place == TurningPlace::Bench);
         let turns = poses_here.map(|aside| turns_in_words(assembly, aside, at_bench));
         let turns: Vec<_> = turns.collect();
         if !turns.is_empty() {
@@ -143,8 +143,8 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
 }
 
 /// The guide's text about holes that have to be drilled.
-fn drilled(parts: &[Part]) -> String {
-    let holes = |part: &Part| match part.printed().1 {
+fn drilling_text(parts: &[Part]) -> String {
+    let holes = |part: &Part| match part.printed_layers().1 {
         0 => None,
         1 => Some(format!("a hole in each {}", part.name)),
         count => Some(format!("{count} holes in each {}", part.name)),
@@ -180,13 +180,13 @@ impl Scene<'_> {
             ..view
         };
         let corner = View {
-            close_up: true,
+            is_close_up: true,
             azimuth: 150.0,
             elevation: 30.0,
             ..view
         };
         type BodyFilter = fn(&Body) -> bool;
-        let (all, at_corner): (BodyFilter, BodyFilter) = (|_| true, at_corner);
+        let (all, at_corner): (BodyFilter, BodyFilter) = (|_| true, is_at_corner);
         let extra = match self.step.extra_view {
             ExtraView::None => None,
             ExtraView::Corner => Some(("near", "the front left corner", corner, 0.6, at_corner)),
@@ -212,7 +212,7 @@ impl Scene<'_> {
         let new = self.new.iter().map(|&body| PictureBody {
             body,
             lift: lift * (self.step.lift)(body),
-            grey: !which(body),
+            is_grey: !which(body),
         });
         let drawn: Vec<_> = old.chain(new).collect();
         let mut labels: Vec<Label> = legend::places(self.assembly, self.pose);
@@ -224,7 +224,7 @@ impl Scene<'_> {
 }
 
 /// True if a body belongs to the corner that close views show.
-fn at_corner(body: &Body) -> bool {
+fn is_at_corner(body: &Body) -> bool {
     let (name, leg) = names(CORNER);
     match body.mount {
         Mount::Chassis | Mount::Sleeve(_) | Mount::Rod(_) => {

@@ -7,7 +7,7 @@ use crate::bodies::assembly::Assembly;
 use crate::files::File;
 use crate::guide::guide;
 use crate::guide::placements::placements;
-use crate::unfit::Unfit;
+use crate::unfit::BuildProblem;
 
 /// Makes bill.json and the folder guide/, with pictures at a pose, usually neutral.
 ///
@@ -16,7 +16,11 @@ use crate::unfit::Unfit;
 ///
 /// # Panics
 /// Never: texts and numbers can always be written as JSON.
-pub fn papers(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<File>, Unfit> {
+pub fn papers(
+    assembly: &Assembly,
+    bill: &Bill,
+    pose: &Solution,
+) -> Result<Vec<File>, BuildProblem> {
     let list = serde_json::to_string_pretty(bill).expect("texts and numbers");
     let mut files = vec![File::text("bill.json".to_owned(), list + "\n")];
     files.extend(guide(assembly, bill, pose)?);

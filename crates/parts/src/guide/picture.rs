@@ -21,7 +21,7 @@ pub struct PictureBody<'a> {
     /// Lift above the body's place, mm.
     pub lift: f64,
     /// True to draw the body in grey, because the picture is about other bodies.
-    pub grey: bool,
+    pub is_grey: bool,
 }
 
 impl<'a> PictureBody<'a> {
@@ -30,7 +30,7 @@ impl<'a> PictureBody<'a> {
         Self {
             body,
             lift: 0.0,
-            grey: is_grey,
+            is_grey,
         }
     }
 }
@@ -47,7 +47,7 @@ pub struct View {
     /// True to turn the robot over about its long axis and show it from below.
     pub from_below: bool,
     /// True to frame only the bodies that are not grey, with a margin around them.
-    pub close_up: bool,
+    pub is_close_up: bool,
 }
 
 impl Default for View {
@@ -57,7 +57,7 @@ impl Default for View {
             elevation: 38.0,
             width: 900.0,
             from_below: false,
-            close_up: false,
+            is_close_up: false,
         }
     }
 }
@@ -73,7 +73,7 @@ const SLICE: f64 = 0.45;
 const HOLE: f64 = 1.75;
 
 /// Colours of servos A1 to A4 and of the bodies that they move: three of Okabe and Ito's, and a purple of Tol's.
-const SERVO: [[f64; 3]; 4] = [
+const SERVO_COLOURS: [[f64; 3]; 4] = [
     [0.0, 114.0, 178.0],
     [213.0, 94.0, 0.0],
     [0.0, 158.0, 115.0],
@@ -93,7 +93,7 @@ impl Eye {
         let away = Vector::direction(view.azimuth);
         let (sin, cos) = sin_cos(view.elevation);
         Self {
-            right: away.left(),
+            right: away.rotated_left(),
             away,
             sin,
             cos,
@@ -101,7 +101,7 @@ impl Eye {
     }
 
     /// Projects a point in space onto the page, mm before the page is scaled; y points down.
-    fn page(&self, point: Vector, z: f64) -> (f64, f64) {
+    fn project(&self, point: Vector, z: f64) -> (f64, f64) {
         let (x, along) = (point.dot(self.right), point.dot(self.away));
         let near = along * self.cos + z * self.sin;
         let up = z * self.cos - along * self.sin;
@@ -110,7 +110,7 @@ impl Eye {
     }
 
     /// The position of the eye in plan view.
-    fn at(&self) -> Vector {
+    fn position(&self) -> Vector {
         self.away * (EYE_DISTANCE * self.cos)
     }
 }
@@ -161,25 +161,28 @@ pub fn picture(
         }
         for layer in present() {
             if layer.z[1] < high + 1e-6 && !layer.loops.is_empty() {
-                let page =
-                    |line: &Vec<Vector>| line.iter().map(|point| eye.page(*point, high)).collect();
+                let page = |line: &Vec<Vector>| {
+                    line.iter().map(|point| eye.project(*point, high)).collect()
+                };
                 let loops: Vec<Trail> = layer.loops.iter().map(page).collect();
                 ink.polygon(&loops, layer.colour, true);
             }
         }
     }
     // The frame is around all bodies, or in a close view around those that are not grey.
-    let framed = layers.iter().filter(|layer| !view.close_up || !layer.grey);
+    let framed = layers
+        .iter()
+        .filter(|layer| !view.is_close_up || !layer.grey);
     let points = framed.flat_map(|layer| {
         let all = layer.loops.iter().flatten();
-        all.flat_map(|point| layer.z.map(|z| eye.page(*point, z)))
+        all.flat_map(|point| layer.z.map(|z| eye.project(*point, z)))
     });
     let place = |label: &Label| match view.from_below {
-        true => eye.page(turned_over(label.at), -label.z),
-        false => eye.page(label.at, label.z),
+        true => eye.project(turned_over(label.at), -label.z),
+        false => eye.project(label.at, label.z),
     };
     let names: Vec<_> = labels.iter().map(|label| (place(label), label)).collect();
-    ink.finish(view.width, &Frame::around(points, view.close_up), &names)
+    ink.finish(view.width, &Frame::around(points, view.is_close_up), &names)
 }
 
 /// A point of the robot after it is turned over about its long axis.
@@ -204,7 +207,12 @@ fn slices(layers: &mut [Layer]) -> Vec<f64> {
 
 fn layers(assembly: &Assembly, drawn: &[PictureBody], pose: &Solution) -> Vec<Layer> {
     let mut layers = Vec::new();
-    for PictureBody { body, lift, grey } in drawn {
+    for PictureBody {
+        body,
+        lift,
+        is_grey: grey,
+    } in drawn
+    {
         let place = assembly.place(body.mount, pose);
         let colour = colour(body, *grey);
         for prism in &body.prisms {
@@ -233,7 +241,7 @@ fn layers(assembly: &Assembly, drawn: &[PictureBody], pose: &Solution) -> Vec<La
 /// The points of a loop, with arcs divided into chords.
 fn points(line: &Loop) -> Vec<Vector> {
     let mut points = Vec::new();
-    for (side, to) in line.ends() {
+    for (side, to) in line.sides_with_end_points() {
         points.push(side.from);
         points.extend(side.along(to, |_, angle| (angle / CHORD).ceil() as u32));
     }
@@ -258,8 +266,8 @@ impl Layer {
         let n = line.len();
         let shade = |i: usize| {
             let (a, b) = (line[i], line[(i + 1) % n]);
-            let out = (b - a).right();
-            let is_seen = out.dot(eye.at() - a) > 0.0;
+            let out = (b - a).rotated_right();
+            let is_seen = out.dot(eye.position() - a) > 0.0;
             let length = out.length();
             // The light comes from the eye's left.
             let light = (eye.away + eye.right * -0.8).dot(out) / (1.3 * length.max(1e-9));
@@ -276,10 +284,10 @@ impl Layer {
                 chain.push(line[(i + 1) % n]);
                 i += 1;
             }
-            let distances = chain.iter().map(|point| (eye.at() - *point).length());
+            let distances = chain.iter().map(|point| (eye.position() - *point).length());
             let far = distances.sum::<f64>() / chain.len() as f64;
-            let mut points: Vec<_> = chain.iter().map(|point| eye.page(*point, low)).collect();
-            points.extend(chain.iter().rev().map(|point| eye.page(*point, high)));
+            let mut points: Vec<_> = chain.iter().map(|point| eye.project(*point, low)).collect();
+            points.extend(chain.iter().rev().map(|point| eye.project(*point, high)));
             let dark = 0.5 + 0.09 * f64::from(light);
             walls.push((far, points, self.colour.map(|part| part * dark)));
         }
@@ -292,7 +300,7 @@ fn colour(body: &Body, is_grey: bool) -> [f64; 3] {
         return [222.0, 222.0, 218.0];
     }
     match (body.kind, body.mount.servo()) {
-        (Kind::Printed, Some(servo)) => SERVO[servo].map(|part| 0.72 * part + 70.0),
+        (Kind::Printed, Some(servo)) => SERVO_COLOURS[servo].map(|part| 0.72 * part + 70.0),
         (Kind::Printed, None) if body.mount == Mount::Chassis => [236.0, 224.0, 190.0],
         (Kind::Printed, None) => [240.0, 228.0, 66.0],
         (Kind::Servo, _) => [70.0, 110.0, 200.0],

@@ -109,11 +109,15 @@ fn pair(point: Vector) -> [f64; 2] {
 fn print(place: &Placement, body: &Body, part: &Part) -> Print {
     let motion = part.print_to_body(body);
     let frame = motion.frame;
-    let origin = place.map(frame.at);
-    let turn = place.turn * frame.turn.x + place.turn.left() * frame.turn.y;
+    let origin = place.map(frame.origin);
+    let turn = place.x_axis * frame.x_axis.x + place.x_axis.rotated_left() * frame.x_axis.y;
     let drill = part.closed_holes().into_iter().map(|at| {
-        let at = if part.turned { at.mirrored() } else { at };
-        pair(origin + turn * at.x + turn.left() * at.y)
+        let at = if part.is_turned_over {
+            at.mirrored()
+        } else {
+            at
+        };
+        pair(origin + turn * at.x + turn.rotated_left() * at.y)
     });
     Print {
         file: format!("stl/{}.stl", part.file()),
@@ -136,11 +140,11 @@ fn screw(assembly: &Assembly, steps: &[Step], place: &Placement, body: &Body) ->
     let turns = |step: &Step| step.stages.iter().any(|stage| (stage.turns)(body));
     let steps_that_turn = (1..).zip(steps).filter(|(_, step)| turns(step));
     Some(Screw {
-        at: pair(place.map(low.add[0].middle())),
+        at: pair(place.map(low.filled_shapes[0].middle())),
         head: low.z[1],
         length,
         diameter: assembly.robot().parts().screw.diameter,
-        head_above: high.add[0].width() > low.add[0].width(),
+        head_above: high.filled_shapes[0].width() > low.filled_shapes[0].width(),
         turned: steps_that_turn.map(|(number, _)| number).collect(),
     })
 }
@@ -155,10 +159,10 @@ fn solids(place: &Placement, body: &Body) -> Vec<Prism> {
             .collect(),
     };
     let layers = body.prisms.iter().flat_map(|prism| {
-        prism.add.iter().map(move |shape| Prism {
+        prism.filled_shapes.iter().map(move |shape| Prism {
             z: prism.z,
             shape: flat(shape),
-            holes: prism.cut.iter().map(flat).collect(),
+            holes: prism.cut_shapes.iter().map(flat).collect(),
         })
     });
     layers.collect()

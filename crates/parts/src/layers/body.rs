@@ -15,9 +15,9 @@ use crate::layers::stack::Span;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prism {
     /// Shapes whose union is filled, in the body's frame, mm.
-    pub add: Vec<Shape>,
+    pub filled_shapes: Vec<Shape>,
     /// Holes cut out of the union, in the body's frame, mm.
-    pub cut: Vec<Shape>,
+    pub cut_shapes: Vec<Shape>,
     /// Bottom and top, mm above the chassis plate's top.
     pub z: Span,
     /// Reductions of the filled shapes' radius at the bottom and at the top, mm; above 0 only for discs.
@@ -29,8 +29,8 @@ impl Prism {
     pub fn new(add: impl Into<Vec<Shape>>, cut: impl Into<Vec<Shape>>, z: Span) -> Self {
         let (add, cut) = (add.into(), cut.into());
         Self {
-            add,
-            cut,
+            filled_shapes: add,
+            cut_shapes: cut,
             z,
             inset: [0.0; 2],
         }
@@ -56,7 +56,7 @@ impl Prism {
     }
 
     /// The layer between two other heights; its walls keep their slope.
-    pub fn at(&self, z: Span) -> Self {
+    pub fn at_heights(&self, z: Span) -> Self {
         let [low, high] = self.inset;
         let slope = (high - low) / (self.z[1] - self.z[0]);
         let inset = match low == high {
@@ -71,7 +71,7 @@ impl Prism {
     }
 
     /// The layer with upright walls and the cross-section at a share of its height: 0 at the bottom, 1 at the top.
-    pub(crate) fn cut_at(&self, share: f64) -> Cow<'_, Self> {
+    pub(crate) fn cross_section(&self, share: f64) -> Cow<'_, Self> {
         if self.inset == [0.0; 2] {
             return Cow::Borrowed(self);
         }
@@ -80,8 +80,8 @@ impl Prism {
             points: shape.points.clone(),
             radius: shape.radius - inset,
         };
-        let add: Vec<Shape> = self.add.iter().map(smaller).collect();
-        Cow::Owned(Self::new(add, self.cut.clone(), self.z))
+        let add: Vec<Shape> = self.filled_shapes.iter().map(smaller).collect();
+        Cow::Owned(Self::new(add, self.cut_shapes.clone(), self.z))
     }
 }
 
@@ -215,7 +215,7 @@ pub struct Body {
     pub prisms: Vec<Prism>,
     /// Names of bodies on other mounts that this body touches or passes through by design, such as the parts that a
     /// screw holds. A separate test checks each such pair.
-    pub meets: Vec<String>,
+    pub allowed_contacts: Vec<String>,
 }
 
 impl Body {
@@ -230,14 +230,14 @@ impl Body {
 }
 
 /// The end of the robot that a servo drives, and the servo's index at that end: 0 for left, 1 for right.
-pub(crate) fn at_end(servo: usize) -> (End, usize) {
+pub(crate) fn end_and_hand(servo: usize) -> (End, usize) {
     let end = End::of_servo(servo);
     (end, usize::from(end.servos()[1] == servo))
 }
 
 /// Length of the coupler on a servo's crank, mm.
 pub(crate) fn coupler_length(robot: &Robot, servo: usize) -> f64 {
-    let (end, hand) = at_end(servo);
+    let (end, hand) = end_and_hand(servo);
     let bars = robot.lizard().end(end);
     [bars.coupler_left, bars.coupler_right][hand]
 }

@@ -13,13 +13,13 @@ use crate::layers::shape::Shape;
 /// Width and height of a digit between the middles of its lines, mm.
 const DIGIT: [f64; 2] = [1.9, 3.4];
 /// Distance from one digit to the next, mm.
-const NEXT: f64 = 3.5;
+const DIGIT_PITCH: f64 = 3.5;
 /// Half the width of a line, mm.
-const LINE: f64 = 0.35;
+const LINE_HALF_WIDTH: f64 = 0.35;
 /// Depth of a line: two printed layers, mm.
-pub const DEEP: f64 = 0.4;
+pub const MARK_DEPTH: f64 = 0.4;
 /// Least width of the face around a mark, mm.
-const BESIDE: f64 = 0.7;
+const MIN_BORDER: f64 = 0.7;
 /// Distance in x between the positions that are tried for a mark, mm; in y it is half of
 /// this.
 const STEP: f64 = 0.8;
@@ -47,10 +47,11 @@ pub fn strokes(text: &str, position: Vector) -> Vec<Shape> {
     let [wide, high] = DIGIT;
     let mut strokes = Vec::new();
     for (index, digit) in text.chars().enumerate() {
-        let left = position + Vector::new(NEXT * index as f64, 0.0);
+        let left = position + Vector::new(DIGIT_PITCH * index as f64, 0.0);
         let point = |(x, y): (f64, f64)| left + Vector::new(x * wide, y * high);
         let bars = lines(digit).iter();
-        strokes.extend(bars.map(|[from, to]| Shape::bar(point(*from), point(*to), LINE)));
+        strokes
+            .extend(bars.map(|[from, to]| Shape::bar(point(*from), point(*to), LINE_HALF_WIDTH)));
     }
     strokes
 }
@@ -58,15 +59,15 @@ pub fn strokes(text: &str, position: Vector) -> Vec<Shape> {
 /// Width and height of a mark, mm.
 pub fn size(text: &str) -> [f64; 2] {
     let count = text.chars().count() as f64;
-    [NEXT * (count - 1.0) + DIGIT[0], DIGIT[1]]
+    [DIGIT_PITCH * (count - 1.0) + DIGIT[0], DIGIT[1]]
 }
 
 /// Layers with a mark engraved on an upper face; `None` if no face has room for it.
-pub fn engraved(prisms: &[Prism], text: &str) -> Option<Vec<Prism>> {
+pub fn engrave_mark(prisms: &[Prism], text: &str) -> Option<Vec<Prism>> {
     let outlines: Vec<_> = prisms.iter().map(Outline::of).collect();
     for (layer, prism) in prisms.iter().enumerate().rev() {
         let [low, high] = prism.z;
-        if high - low < 2.0 * DEEP {
+        if high - low < 2.0 * MARK_DEPTH {
             continue;
         }
         let covered = |point| {
@@ -75,13 +76,13 @@ pub fn engraved(prisms: &[Prism], text: &str) -> Option<Vec<Prism>> {
                 .is_some_and(|above| above.contains(point))
         };
         let free = |point: Vector| outlines[layer].contains(point) && !covered(point);
-        let Some(at) = place(&outlines[layer], text, free) else {
+        let Some(at) = find_position(&outlines[layer], text, free) else {
             continue;
         };
         let mut layers = prisms.to_vec();
-        let lower = prism.at([low, high - DEEP]);
-        let mut upper = prism.at([high - DEEP, high]);
-        upper.cut.extend(strokes(text, at));
+        let lower = prism.at_heights([low, high - MARK_DEPTH]);
+        let mut upper = prism.at_heights([high - MARK_DEPTH, high]);
+        upper.cut_shapes.extend(strokes(text, at));
         layers.splice(layer..=layer, [lower, upper]);
         return Some(layers);
     }
@@ -90,11 +91,11 @@ pub fn engraved(prisms: &[Prism], text: &str) -> Option<Vec<Prism>> {
 
 /// Lower left corner of a position in an outline that has room for a mark; `None` if there
 /// is no room.
-fn place(outline: &Outline, text: &str, free: impl Fn(Vector) -> bool) -> Option<Vector> {
-    let ends = outline.loops().flat_map(Loop::ends);
+fn find_position(outline: &Outline, text: &str, free: impl Fn(Vector) -> bool) -> Option<Vector> {
+    let ends = outline.loops().flat_map(Loop::sides_with_end_points);
     let [low, high] = bounds(ends.flat_map(|(side, to)| [side.from, side.middle(to)]));
     let [wide, tall] = size(text);
-    let margin = LINE + BESIDE;
+    let margin = LINE_HALF_WIDTH + MIN_BORDER;
     let steps = |from: f64, to: f64, step: f64| {
         let count = ((to - from) / step).ceil().max(0.0) as u32;
         (0..=count).map(move |i| (from + f64::from(i) * step).min(to))

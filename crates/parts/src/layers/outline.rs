@@ -32,12 +32,12 @@ pub(crate) const SAME_POINT_MM: f64 = 1e-5;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loop {
     /// The sides, each from its start point to the start point of the next side.
-    pub sides: Vec<Side>,
+    pub sides: Vec<Segment>,
 }
 
 /// One side of a loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Side {
+pub struct Segment {
     /// The start point, mm.
     pub from: Vector,
     /// The tangent of a quarter of the arc's angle: 0 for a straight side, 1 for a semicircle, positive for a left
@@ -55,26 +55,29 @@ pub struct Outline {
 impl Outline {
     /// The outline of a layer.
     pub fn of(prism: &Prism) -> Self {
-        let (is_outer, gaps) = unite(prism.add.iter().map(polyline));
-        let (mut cuts, _) = unite(gaps.into_iter().chain(prism.cut.iter().map(polyline)));
+        let (is_outer, gaps) = unite(prism.filled_shapes.iter().map(polyline));
+        let (mut cuts, _) = unite(
+            gaps.into_iter()
+                .chain(prism.cut_shapes.iter().map(polyline)),
+        );
         let mut pieces = is_outer;
         // Cuts that open a piece change its outer loop; the others are holes.
         cuts.retain(|cut| {
-            let mut opens = false;
+            let mut is_opened = false;
             let mut left = Vec::new();
             for piece in pieces.drain(..) {
                 let rest = piece.boolean(cut, BooleanOp::Not);
                 match rest.result_info {
                     BooleanResultInfo::Intersected | BooleanResultInfo::Overlapping => {
-                        opens = true;
+                        is_opened = true;
                         left.extend(rest.pos_plines.into_iter().map(|part| part.pline));
                     }
-                    BooleanResultInfo::Pline1InsidePline2 => opens = true,
+                    BooleanResultInfo::Pline1InsidePline2 => is_opened = true,
                     _ => left.push(piece),
                 }
             }
             pieces = left;
-            !opens
+            !is_opened
         });
         let loops = |piece: Polyline<f64>| {
             let holes = cuts.iter().filter(|cut| {
@@ -108,7 +111,7 @@ impl Outline {
 
     /// True if a point is in the material.
     pub fn contains(&self, point: Vector) -> bool {
-        let turns: i32 = self.loops().map(|line| line.turns_around(point)).sum();
+        let turns: i32 = self.loops().map(|line| line.winding_number(point)).sum();
         turns > 0
     }
 }
@@ -123,7 +126,7 @@ impl Loop {
         }
         let side = |vertex: PlineVertex<f64>| {
             let straight = vertex.bulge.abs() < 1e-9;
-            Side {
+            Segment {
                 from: Vector::new(vertex.x, vertex.y),
                 bulge: if straight { 0.0 } else { vertex.bulge },
             }
@@ -133,14 +136,14 @@ impl Loop {
     }
 
     /// The sides, each with its end point.
-    pub fn ends(&self) -> impl Iterator<Item = (Side, Vector)> {
+    pub fn sides_with_end_points(&self) -> impl Iterator<Item = (Segment, Vector)> {
         let n = self.sides.len();
         (0..n).map(move |i| (self.sides[i], self.sides[(i + 1) % n].from))
     }
 
     /// Centre and radius if the loop is a circle.
     pub fn circle(&self) -> Option<(Vector, f64)> {
-        let mut arcs = self.ends().map(|(side, to)| side.arc(to));
+        let mut arcs = self.sides_with_end_points().map(|(side, to)| side.arc(to));
         let (centre, radius) = arcs.next()??;
         let is_same_circle = |arc: Option<(Vector, f64)>| {
             let near = |(at, size): (Vector, f64)| {
@@ -159,7 +162,7 @@ impl Loop {
     /// The enclosed area times its centroid, mm^3.
     fn moment(&self) -> Vector {
         let mut sum = Vector::default();
-        for (side, to) in self.ends() {
+        for (side, to) in self.sides_with_end_points() {
             let (a, b) = (side.from, to);
             // A triangle from the origin, and the arc's segment beside its chord.
             sum = sum + (a + b) * (a.cross(b) / 6.0);
@@ -172,7 +175,7 @@ impl Loop {
                 let out = 2.0 / 3.0 * (reach * reach * reach) / area;
                 let chord = (b - a) * (1.0 / (b - a).length());
                 // A left turn bulges out to the right of its chord.
-                let beyond = chord.right() * side.bulge.signum();
+                let beyond = chord.rotated_right() * side.bulge.signum();
                 let far = centre + beyond * out;
                 sum = sum + far * (area * side.bulge.signum());
             }
@@ -180,7 +183,7 @@ impl Loop {
         sum
     }
 
-    fn turns_around(&self, point: Vector) -> i32 {
+    fn winding_number(&self, point: Vector) -> i32 {
         self.polyline()
             .winding_number(Vector2::new(point.x, point.y))
     }
@@ -194,7 +197,7 @@ impl Loop {
     }
 }
 
-impl Side {
+impl Segment {
     /// The side as a vertex of the library's polylines.
     pub(crate) fn vertex(&self) -> PlineVertex<f64> {
         PlineVertex::new(self.from.x, self.from.y, self.bulge)
@@ -226,7 +229,7 @@ impl Side {
         let arm = self.from - centre;
         let point = |i: u32| {
             let angle = angle * f64::from(i) / f64::from(count);
-            centre + arm * libm::cos(angle) + arm.left() * libm::sin(angle)
+            centre + arm * libm::cos(angle) + arm.rotated_left() * libm::sin(angle)
         };
         (1..count).map(point).collect()
     }
@@ -278,7 +281,7 @@ fn polyline(shape: &Shape) -> Polyline<f64> {
             line.add(at.x, at.y, 0.0);
             continue;
         }
-        let [begin, end] = [incoming, outgoing].map(|way| at + way.right() * *radius);
+        let [begin, end] = [incoming, outgoing].map(|way| at + way.rotated_right() * *radius);
         // Tangent of a quarter of the turn: the half-angle formula, applied twice.
         let (sin, cos) = (incoming.cross(outgoing), incoming.dot(outgoing));
         let bulge = if n == 2 {
@@ -295,7 +298,7 @@ fn polyline(shape: &Shape) -> Polyline<f64> {
 
 /// The volume of a layer, mm^3.
 pub(crate) fn volume(prism: &Prism) -> f64 {
-    let area = |share| Outline::of(&prism.cut_at(share)).area();
+    let area = |share| Outline::of(&prism.cross_section(share)).area();
     let mean = match prism.inset[0] == prism.inset[1] {
         true => area(0.0),
         // Simpson's rule, exact for the area of a cone.

@@ -6,37 +6,37 @@ use lizard_kinematics::{Real, Vector};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement<T = f64> {
     /// The frame's origin, mm.
-    pub at: Vector<T>,
+    pub origin: Vector<T>,
     /// The direction of the frame's x axis, a unit vector.
-    pub turn: Vector<T>,
+    pub x_axis: Vector<T>,
 }
 
 impl Placement {
     /// The chassis frame itself.
     pub const CHASSIS: Self = Self {
-        at: Vector::new(0.0, 0.0),
-        turn: Vector::new(1.0, 0.0),
+        origin: Vector::new(0.0, 0.0),
+        x_axis: Vector::new(1.0, 0.0),
     };
 
     /// Converts a point from the chassis frame to the body's frame, mm.
     pub fn unmap(&self, point: Vector) -> Vector {
-        let from = point - self.at;
-        Vector::new(from.dot(self.turn), self.turn.cross(from))
+        let from = point - self.origin;
+        Vector::new(from.dot(self.x_axis), self.x_axis.cross(from))
     }
 }
 
 impl<T: Real> Placement<T> {
     /// Converts a point from the body's frame to the chassis frame, mm.
     pub fn map(&self, point: Vector) -> Vector<T> {
-        self.at + self.turn * point.x + self.turn.left() * point.y
+        self.origin + self.x_axis * point.x + self.x_axis.rotated_left() * point.y
     }
 
     /// Converts this placement to another body's frame. Both are given in the chassis frame.
-    pub fn seen_from(&self, frame: &Self) -> Self {
-        let in_frame = |v: Vector<T>| Vector::new(v.dot(frame.turn), frame.turn.cross(v));
+    pub fn relative_to(&self, frame: &Self) -> Self {
+        let in_frame = |v: Vector<T>| Vector::new(v.dot(frame.x_axis), frame.x_axis.cross(v));
         Self {
-            at: in_frame(self.at - frame.at),
-            turn: in_frame(self.turn),
+            origin: in_frame(self.origin - frame.origin),
+            x_axis: in_frame(self.x_axis),
         }
     }
 }

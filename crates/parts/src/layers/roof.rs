@@ -14,13 +14,13 @@ use crate::layers::shape::Shape;
 /// Height of a printer's layer, mm. A hole is closed by one layer.
 pub const LAYER_MM: f64 = 0.2;
 /// Distance from a hole's edge at which the layer below must support it, mm.
-const BESIDE: f64 = 0.3;
+const SUPPORT_DISTANCE_MM: f64 = 0.3;
 /// Tolerance within which heights count as equal, mm.
 const SAME_HEIGHT_MM: f64 = 1e-6;
 
 /// Closes each hole that would begin in mid-air with one printed layer. Returns the layers and the number of these
 /// holes.
-pub fn closed(prisms: &[Prism]) -> (Vec<Prism>, usize) {
+pub fn close_unsupported_holes(prisms: &[Prism]) -> (Vec<Prism>, usize) {
     let mut layers = prisms.to_vec();
     let mut count = 0;
     for (number, pair) in prisms.windows(2).enumerate() {
@@ -28,7 +28,7 @@ pub fn closed(prisms: &[Prism]) -> (Vec<Prism>, usize) {
         let above = &prisms[number + 1];
         let low = above.z[0];
         let high = first_layer_top(low);
-        for hole in &above.cut {
+        for hole in &above.cut_shapes {
             if !begins_in_air(hole, above, &below) {
                 continue;
             }
@@ -36,7 +36,7 @@ pub fn closed(prisms: &[Prism]) -> (Vec<Prism>, usize) {
             layers = layers.iter().flat_map(|layer| split(layer, high)).collect();
             for layer in &mut layers {
                 if layer.z[0] > low - SAME_HEIGHT_MM && layer.z[1] < high + SAME_HEIGHT_MM {
-                    layer.cut.retain(|other| other != hole);
+                    layer.cut_shapes.retain(|other| other != hole);
                 }
             }
         }
@@ -56,16 +56,19 @@ fn split(layer: &Prism, height: f64) -> Vec<Prism> {
     let [low, high] = layer.z;
     match height < low + SAME_HEIGHT_MM || height > high - SAME_HEIGHT_MM {
         true => vec![layer.clone()],
-        false => vec![layer.at([low, height]), layer.at([height, high])],
+        false => vec![
+            layer.at_heights([low, height]),
+            layer.at_heights([height, high]),
+        ],
     }
 }
 
 /// Returns the centres of the holes that begin in mid-air.
-pub fn in_air(prisms: &[Prism]) -> Vec<Vector> {
+pub fn unsupported_hole_centres(prisms: &[Prism]) -> Vec<Vector> {
     let mut middles = Vec::new();
     for pair in prisms.windows(2) {
         let below = Outline::of(&pair[0]);
-        let holes = pair[1].cut.iter();
+        let holes = pair[1].cut_shapes.iter();
         let in_air = holes.filter(|hole| begins_in_air(hole, &pair[1], &below));
         middles.extend(in_air.map(Shape::middle));
     }
@@ -77,10 +80,10 @@ fn begins_in_air(hole: &Shape, prism: &Prism, below: &Outline) -> bool {
     let outline = Outline::of(prism);
     let edge = Shape {
         points: hole.points.clone(),
-        radius: hole.radius + BESIDE,
+        radius: hole.radius + SUPPORT_DISTANCE_MM,
     };
     let alone = Outline::of(&Prism::solid([edge], prism.z));
-    let mut points = alone.loops().flat_map(Loop::ends);
+    let mut points = alone.loops().flat_map(Loop::sides_with_end_points);
     let in_air = |point: Vector| outline.contains(point) && !below.contains(point);
     points.all(|(side, to)| in_air(side.from) && in_air(side.middle(to)))
 }

@@ -128,12 +128,14 @@ impl Shape {
         } else {
             for (a, b) in self.edges() {
                 for (c, d) in other.edges() {
-                    between = between.min(segments(a, b, c, d));
+                    between = between.min(segment_distance(a, b, c, d));
                 }
             }
         }
         if between == 0.0 {
-            let deep = self.beyond(other).max(other.beyond(self));
+            let deep = self
+                .max_side_separation(other)
+                .max(other.max_side_separation(self));
             // Two discs have no sides.
             between = if deep.is_finite() { deep.min(0.0) } else { 0.0 };
         }
@@ -141,8 +143,8 @@ impl Shape {
     }
 
     /// Depth of this shape within a hole, mm; below 0 if it sticks out. The result is a lower
-    /// bound for every displacement of its points by up to `strayed` along x and y.
-    pub fn depth_in(&self, hole: &Self, strayed: Vector) -> f64 {
+    /// bound for every displacement of its points by up to `max_displacement` along x and y.
+    pub fn depth_in(&self, hole: &Self, max_displacement: Vector) -> f64 {
         let sharp = Self {
             points: hole.points.clone(),
             radius: 0.0,
@@ -154,10 +156,10 @@ impl Shape {
             .iter()
             .map(out)
             .fold(f64::NEG_INFINITY, f64::max);
-        let general_bound = air - outermost - strayed.length();
+        let general_bound = air - outermost - max_displacement.length();
         // A sharper bound for a long hole with a shape that slides along it.
-        let lines = hole.lines().flat_map(|(from, out)| {
-            let stray = out.x.abs() * strayed.x + out.y.abs() * strayed.y;
+        let lines = hole.side_lines().flat_map(|(from, out)| {
+            let stray = out.x.abs() * max_displacement.x + out.y.abs() * max_displacement.y;
             self.points
                 .iter()
                 .map(move |&point| out.dot(point - from) + stray)
@@ -172,18 +174,21 @@ impl Shape {
 
     /// The lines along the polygon's sides: a point on each line, and the line's outward unit
     /// normal. A bar has two, one for each direction; a disc has none.
-    fn lines(&self) -> impl Iterator<Item = (Vector, Vector)> {
+    fn side_lines(&self) -> impl Iterator<Item = (Vector, Vector)> {
         let n = self.points.len();
         (0..if n > 1 { n } else { 0 }).map(move |i| {
             let (from, to) = (self.points[i], self.points[(i + 1) % n]);
-            (from, (to - from).right() * (1.0 / (to - from).length()))
+            (
+                from,
+                (to - from).rotated_right() * (1.0 / (to - from).length()),
+            )
         })
     }
 
     /// The largest distance of the other polygon beyond a line along one of this polygon's
     /// sides; minus infinity for a disc, which has no sides.
-    fn beyond(&self, other: &Self) -> f64 {
-        let beyond = self.lines().map(|(from, out)| {
+    fn max_side_separation(&self, other: &Self) -> f64 {
+        let beyond = self.side_lines().map(|(from, out)| {
             let depths = other.points.iter().map(|&point| out.dot(point - from));
             depths.fold(f64::INFINITY, f64::min)
         });
@@ -204,20 +209,22 @@ impl Shape {
 }
 
 /// The distance between two line segments, mm.
-fn segments(a: Vector, b: Vector, c: Vector, d: Vector) -> f64 {
+fn segment_distance(a: Vector, b: Vector, c: Vector, d: Vector) -> f64 {
     let side = |p: Vector, q: Vector, r: Vector| (q - p).cross(r - p);
     let crosses = side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0;
     if crosses {
         return 0.0;
     }
-    let first = to_line(a, c, d).min(to_line(b, c, d));
-    first.min(to_line(c, a, b)).min(to_line(d, a, b))
+    let first = segment_point_distance(a, c, d).min(segment_point_distance(b, c, d));
+    first
+        .min(segment_point_distance(c, a, b))
+        .min(segment_point_distance(d, a, b))
 }
 
 /// The distance between a point and a line segment, mm.
-fn to_line(point: Vector, from: Vector, to: Vector) -> f64 {
+fn segment_point_distance(point: Vector, from: Vector, to: Vector) -> f64 {
     let along = to - from;
-    let square = along.square();
+    let square = along.length_squared();
     let share = match square > 0.0 {
         true => ((point - from).dot(along) / square).clamp(0.0, 1.0),
         false => 0.0,

@@ -21,18 +21,18 @@ const STANDOFFS: [f64; 9] = [10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.
 /// Gap between a head or a nut and the part that turns under it, mm.
 pub const PLAY: f64 = 0.2;
 /// Height of a hexagonal head, mm (ISO 4017).
-pub const HEX: f64 = 2.0;
+pub const HEX_HEAD_HEIGHT: f64 = 2.0;
 /// Height of the seat under a servo's flange, mm. It lifts the horn above the strut.
 const SEAT: f64 = 2.6;
 /// Height of a leg's bearing on the plate, mm. The foot is six times as far away: play of 0.2 mm in the bearing
 /// moves it by 1.2 mm.
 const BEARING: f64 = 8.5;
 /// From the underside of a leg's crank to the tip of its anchor's screw, mm.
-const TIP: f64 = 0.1;
+const ANCHOR_TIP_GAP: f64 = 0.1;
 /// Least thickness above a nut that is sunk into a part, mm.
 const OVER_NUT: f64 = 1.2;
 /// Thickness of a strut's floor under its spring, mm.
-const STRUT: f64 = 1.6;
+const STRUT_FLOOR_THICKNESS: f64 = 1.6;
 /// Gap between a strut's floor and its spring, mm.
 const OVER_FLOOR: f64 = 0.15;
 /// Gap above a spring's hook, mm.
@@ -42,7 +42,7 @@ const OVER_STRUT: f64 = 0.3;
 /// Thickness of a link under the horn's arm, mm.
 const UNDER_HORN: f64 = 1.8;
 /// Thickness of a sleeve's floor and roof, mm.
-const SLEEVE: f64 = 1.3;
+const SLEEVE_WALL_THICKNESS: f64 = 1.3;
 /// The leaf that carries a foot: five layers of a printer, mm.
 pub const LEAF: f64 = 1.0;
 /// Height of a pad above the head that snaps into it, mm.
@@ -85,21 +85,21 @@ pub struct Stack {
     /// The middle of the spring's coil, and of its hooks.
     pub coil: f64,
     /// The face under the head of a leg anchor's screw, above the hook.
-    pub on_hook: f64,
+    pub anchor_head_face: f64,
     /// A rigid strut, as high as a slotted one.
     pub rigid: Span,
     /// The servos' links.
     pub link: Span,
     /// The face under the hexagonal heads that the links hold.
-    pub held: f64,
+    pub hex_head_face: f64,
     /// The pocket in the links' tops for the horns.
     pub horn: Span,
     /// The recess in the links' tops for the heads of the anchors' screws.
-    pub sunk: Span,
+    pub head_recess: Span,
     /// The lower couplers of head and tail.
-    pub lower: Span,
+    pub lower_coupler: Span,
     /// The upper couplers of head and tail.
-    pub upper: Span,
+    pub upper_coupler: Span,
     /// The sleeves of the sliders.
     pub sleeve: Span,
     /// The bores of the sleeves.
@@ -122,10 +122,10 @@ impl Stack {
         let crank = [gap, gap + t.max(screw.nut_height + 1.0)];
         let bearing = [crank[1], crank[0] + BEARING];
         let strut_low = crank[1] + 1.5;
-        let strut = [strut_low, strut_low + STRUT];
+        let strut = [strut_low, strut_low + STRUT_FLOOR_THICKNESS];
         let coil = strut[1] + OVER_FLOOR + parts.spring.outer / 2.0;
         // The anchor's screw must not touch the plate under its crank.
-        let tip = crank[0] + TIP;
+        let tip = crank[0] + ANCHOR_TIP_GAP;
         let on_hook = tip + screw_length(coil + parts.spring.wire / 2.0 + OVER_HOOK - tip);
         let walls = on_hook - OVER_STRUT;
         // The underside of the horn's arm on the shaft.
@@ -134,10 +134,12 @@ impl Stack {
         let link = [arm - UNDER_HORN, arm - UNDER_HORN + t];
         let lower = above(link, t);
         let upper = above(lower, t);
-        let bore_low = lower[0] + SLEEVE;
+        let bore_low = lower[0] + SLEEVE_WALL_THICKNESS;
         let bore = [bore_low, bore_low + t + 2.0 * parts.fit];
         let rod = [bore[0] + parts.fit, bore[1] - parts.fit];
-        let slider = screw_length(rod[1] + PLAY + screw.nut_height - link[0] - HEX) + link[0] + HEX;
+        let slider = screw_length(rod[1] + PLAY + screw.nut_height - link[0] - HEX_HEAD_HEIGHT)
+            + link[0]
+            + HEX_HEAD_HEIGHT;
         let deck = STANDOFFS
             .into_iter()
             .find(|length| *length >= slider + gap)
@@ -160,15 +162,15 @@ impl Stack {
             strut,
             recess: [strut[1], walls],
             coil,
-            on_hook,
-            held: link[0] + HEX,
+            anchor_head_face: on_hook,
+            hex_head_face: link[0] + HEX_HEAD_HEIGHT,
             rigid: [strut[0], walls],
             link,
             horn: [arm, link[1]],
-            sunk: [link[1] - screw.head_height - PLAY, link[1]],
-            lower,
-            upper,
-            sleeve: [lower[0], bore[1] + SLEEVE],
+            head_recess: [link[1] - screw.head_height - PLAY, link[1]],
+            lower_coupler: lower,
+            upper_coupler: upper,
+            sleeve: [lower[0], bore[1] + SLEEVE_WALL_THICKNESS],
             bore,
             rod,
             deck: [deck, deck + parts.plate],
@@ -179,12 +181,12 @@ impl Stack {
     /// Top of the pocket for a leg anchor's nut, mm, and the length of the anchor's screw, mm.
     /// The screw's tip must not touch the plate.
     pub fn anchor_nut(&self, parts: &Parts) -> (f64, f64) {
-        let tip = self.crank[0] + TIP;
-        (tip + parts.screw.nut_height, self.on_hook - tip)
+        let tip = self.crank[0] + ANCHOR_TIP_GAP;
+        (tip + parts.screw.nut_height, self.anchor_head_face - tip)
     }
 
     /// Height of the head of a pad's screw above the floor, mm.
-    pub fn under_head(&self, parts: &Parts) -> f64 {
+    pub fn pad_head_height(&self, parts: &Parts) -> f64 {
         self.pad[1] - PAD_LIP - parts.screw.head_height - self.floor
     }
 

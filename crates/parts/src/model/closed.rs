@@ -18,7 +18,7 @@ pub(crate) struct LoopJoint {
 }
 
 /// Returns all cut joints: those of head and tail, of the sliders, of the legs' parallelograms and of the struts.
-pub(crate) fn all(assembly: &Assembly, slotted: bool) -> Vec<LoopJoint> {
+pub(crate) fn cut_joints(assembly: &Assembly, slotted: bool) -> Vec<LoopJoint> {
     let (lizard, layout) = (assembly.robot().lizard(), assembly.layout());
     let mut all = Vec::new();
     // Each point is on the x axis of the first body.
@@ -27,24 +27,26 @@ pub(crate) fn all(assembly: &Assembly, slotted: bool) -> Vec<LoopJoint> {
         all.push(LoopJoint { name, bodies, at });
     };
     for end in End::ALL {
-        let couplers = end.servos().map(|servo| Node::Of(Mount::Coupler(servo)));
+        let couplers = end
+            .servos()
+            .map(|servo| Node::OnMount(Mount::Coupler(servo)));
         close(format!("end {end}"), couplers, lizard.end(end).coupler_left);
     }
     for side in Side::ALL {
         let [front, _] = side.servos();
-        let bodies = [Mount::Rod(side), Mount::Link(front)].map(Node::Of);
+        let bodies = [Mount::Rod(side), Mount::Link(front)].map(Node::OnMount);
         close(format!("slider {side}"), bodies, 0.0);
     }
     for servo in 0..4 {
         let leg = lizard_robot::servo::LEGS[servo];
-        let bodies = [Mount::Foot(servo), Mount::Follower(servo)].map(Node::Of);
+        let bodies = [Mount::Foot(servo), Mount::Follower(servo)].map(Node::OnMount);
         close(format!("follower joint {leg}"), bodies, lizard.leg.coupler);
         let strut = match slotted {
             true => Node::Slot(servo),
-            false => Node::Of(Mount::Strut(servo)),
+            false => Node::OnMount(Mount::Strut(servo)),
         };
         let (bodies, length) = (
-            [strut, Node::Of(Mount::Crank(servo))],
+            [strut, Node::OnMount(Mount::Crank(servo))],
             layout.legs[servo].strut_length,
         );
         close(format!("leg anchor {leg}"), bodies, length);

@@ -8,7 +8,7 @@ pub struct Floor {
     /// The blocks that lie on the floor.
     pub blocks: Vec<Block>,
     /// Slope: the angle by which the floor rises in the robot's forward direction, deg.
-    pub rises: f64,
+    pub slope: f64,
     /// The friction coefficient under each pad, in servo order.
     pub friction: [f64; 4],
 }
@@ -17,11 +17,11 @@ pub struct Floor {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Block {
     /// The block's middle, mm to the right of the robot's start position and ahead of it.
-    pub at: [f64; 2],
+    pub centre: [f64; 2],
     /// The block's size to the right, forward and up, mm, before the block is turned.
     pub size: [f64; 3],
     /// The angle by which the block is turned about its middle, deg counter-clockwise.
-    pub turned: f64,
+    pub rotation: f64,
 }
 
 impl Floor {
@@ -30,7 +30,7 @@ impl Floor {
     pub fn of(robot: &Robot) -> Self {
         Self {
             blocks: Vec::new(),
-            rises: 0.0,
+            slope: 0.0,
             friction: [robot.ground().friction; 4],
         }
     }

@@ -11,9 +11,9 @@ pub(crate) struct Inertia {
     /// Mass, g.
     pub mass: f64,
     /// First moments: mass times position, g mm.
-    first: [f64; 3],
+    first_moments: [f64; 3],
     /// Second moments: mass times the products of the position's components, g mm^2.
-    second: [[f64; 3]; 3],
+    second_moments: [[f64; 3]; 3],
 }
 
 impl Inertia {
@@ -29,10 +29,10 @@ impl Inertia {
             sum.mass += volume;
             let all = [0, 1, 2].map(|i| a[i] + b[i] + c[i]);
             for i in 0..3 {
-                sum.first[i] += volume * all[i] / 4.0;
+                sum.first_moments[i] += volume * all[i] / 4.0;
                 for j in 0..3 {
                     let products = a[i] * a[j] + b[i] * b[j] + c[i] * c[j];
-                    sum.second[i][j] += volume * (all[i] * all[j] + products) / 20.0;
+                    sum.second_moments[i][j] += volume * (all[i] * all[j] + products) / 20.0;
                 }
             }
         }
@@ -50,8 +50,8 @@ impl Inertia {
     /// The moments of the body after its density is multiplied by a factor.
     pub fn scaled(mut self, factor: f64) -> Self {
         self.mass *= factor;
-        self.first = self.first.map(|part| part * factor);
-        self.second = self.second.map(|row| row.map(|part| part * factor));
+        self.first_moments = self.first_moments.map(|part| part * factor);
+        self.second_moments = self.second_moments.map(|row| row.map(|part| part * factor));
         self
     }
 
@@ -59,11 +59,12 @@ impl Inertia {
     pub fn moved(mut self, by: [f64; 3]) -> Self {
         for i in 0..3 {
             for j in 0..3 {
-                self.second[i][j] += by[i] * self.first[j] + self.first[i] * by[j];
-                self.second[i][j] += self.mass * by[i] * by[j];
+                self.second_moments[i][j] +=
+                    by[i] * self.first_moments[j] + self.first_moments[i] * by[j];
+                self.second_moments[i][j] += self.mass * by[i] * by[j];
             }
         }
-        for (first, by) in self.first.iter_mut().zip(by) {
+        for (first, by) in self.first_moments.iter_mut().zip(by) {
             *first += self.mass * by;
         }
         self
@@ -73,9 +74,9 @@ impl Inertia {
     pub fn plus(mut self, other: &Self) -> Self {
         self.mass += other.mass;
         for i in 0..3 {
-            self.first[i] += other.first[i];
+            self.first_moments[i] += other.first_moments[i];
             for j in 0..3 {
-                self.second[i][j] += other.second[i][j];
+                self.second_moments[i][j] += other.second_moments[i][j];
             }
         }
         self
@@ -83,14 +84,14 @@ impl Inertia {
 
     /// The mass centre, mm.
     pub fn centre(&self) -> [f64; 3] {
-        self.first.map(|part| part / self.mass)
+        self.first_moments.map(|part| part / self.mass)
     }
 
     /// The inertia about the mass centre, g mm^2: xx, yy, zz, xy, xz, yz. The products have the sign that they have
     /// in the inertia tensor.
     pub fn tensor(&self) -> [f64; 6] {
         let at = self.centre();
-        let about = |i: usize, j: usize| self.second[i][j] - self.mass * at[i] * at[j];
+        let about = |i: usize, j: usize| self.second_moments[i][j] - self.mass * at[i] * at[j];
         let [x, y, z] = [0, 1, 2].map(|i| about(i, i));
         let [xy, xz, yz] = [about(0, 1), about(0, 2), about(1, 2)];
         [y + z, x + z, x + y, -xy, -xz, -yz]

@@ -28,7 +28,7 @@ impl Writer<'_> {
     /// The name of the joint between a body and its parent: the name of the servo that drives the joint, or a name
     /// made from the body's. In SDF no joint may have the name of a body.
     pub(super) fn joint_name(&self, node: Node) -> String {
-        match self.motor_on(node) {
+        match self.driving_servo(node) {
             Some(servo) => NAMES[servo].to_owned(),
             None => format!("{}_joint", node.identifier()),
         }
@@ -37,16 +37,16 @@ impl Writer<'_> {
     /// The range of a body's joint, rad or m from neutral; `None` if it is unlimited.
     pub(super) fn range(&self, node: Node) -> Option<[f64; 2]> {
         let robot = self.assembly.robot();
-        let range = match (self.motor_on(node), node) {
+        let range = match (self.driving_servo(node), node) {
             (Some(servo), _) => {
                 let (smallest, largest) = robot.servos()[servo].travel();
                 [smallest, largest].map(f64::to_radians)
             }
-            (None, Node::Of(Mount::Link(_))) => {
+            (None, Node::OnMount(Mount::Link(_))) => {
                 let play = self.scene.play.to_radians();
                 [-play, play]
             }
-            (None, Node::Of(Mount::Rod(side))) => self.stroke(side).map(|mm| mm * MILLI),
+            (None, Node::OnMount(Mount::Rod(side))) => self.stroke(side).map(|mm| mm * MILLI),
             (None, Node::Slot(_)) => [0.0, SLOT * MILLI],
             _ => return None,
         };
@@ -63,16 +63,16 @@ impl Writer<'_> {
     /// Damping, N m s or N s/m, and dry friction, N m or N, of a body's joint.
     pub(super) fn resistance(&self, node: Node) -> [f64; 2] {
         let motors = &self.scene.motors;
-        let resistance = match (self.motor_on(node), node) {
+        let resistance = match (self.driving_servo(node), node) {
             (Some(servo), _) => {
                 [motors.each[servo].damping(), motors.joints.drag].map(|of| of * MILLI)
             }
-            (None, Node::Of(Mount::Rod(_))) => [0.0, motors.joints.slider],
-            (None, Node::Pad(_)) => [self.leaf()[1], 0.0],
+            (None, Node::OnMount(Mount::Rod(_))) => [0.0, motors.joints.slider],
+            (None, Node::Pad(_)) => [self.leaf_spring()[1], 0.0],
             // Grease: it damps a link that moves freely within its play.
-            (None, Node::Of(Mount::Link(_))) => [1e-5, 0.0],
+            (None, Node::OnMount(Mount::Link(_))) => [1e-5, 0.0],
             (None, Node::Slot(_)) => [0.1, 0.0],
-            _ => [0.0, self.scene.pins * MILLI],
+            _ => [0.0, self.scene.pin_friction * MILLI],
         };
         resistance.map(round)
     }

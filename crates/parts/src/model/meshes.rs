@@ -8,26 +8,27 @@ use crate::model::node::Node;
 use crate::model::pieces::Piece;
 
 /// The materials that occur among the parts of a body.
-pub(super) fn looks(pieces: &[Piece], node: Node) -> impl Iterator<Item = Material> {
-    let is_present = move |look: &Material| {
+pub(super) fn materials_of(pieces: &[Piece], node: Node) -> impl Iterator<Item = Material> {
+    let is_present = move |material: &Material| {
         let mut own = pieces.iter().filter(|piece| piece.node == node);
-        own.any(|piece| Material::of(piece.kind) == *look)
+        own.any(|piece| Material::of(piece.kind) == *material)
     };
     Material::ALL.into_iter().filter(is_present)
 }
 
 /// The name of the mesh file of those parts of a body that have a given material.
-pub(super) fn file(node: Node, look: Material) -> String {
-    format!("{}-{}.stl", node.identifier(), look.name)
+pub(super) fn mesh_file_name(node: Node, material: Material) -> String {
+    format!("{}-{}.stl", node.identifier(), material.name)
 }
 
 /// The mesh files of all bodies, mm, each in the frame of its body.
 pub(super) fn files(pieces: &[Piece], nodes: &[Node]) -> Vec<File> {
     let mut files = Vec::new();
     for &node in nodes {
-        for look in looks(pieces, node) {
+        for material in materials_of(pieces, node) {
             let mut mesh = Mesh::default();
-            let is_own = |piece: &&Piece| piece.node == node && Material::of(piece.kind) == look;
+            let is_own =
+                |piece: &&Piece| piece.node == node && Material::of(piece.kind) == material;
             for piece in pieces.iter().filter(is_own) {
                 let first = mesh.corners.len();
                 mesh.corners.extend(&piece.mesh.corners);
@@ -37,7 +38,7 @@ pub(super) fn files(pieces: &[Piece], nodes: &[Node]) -> Vec<File> {
             }
             files.push(File {
                 bytes: stl(&node.name(), &mesh),
-                path: file(node, look),
+                path: mesh_file_name(node, material),
             });
         }
     }

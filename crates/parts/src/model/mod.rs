@@ -33,7 +33,7 @@ use lizard_kinematics::Solution;
 
 use crate::bodies::assembly::Assembly;
 use crate::files::File;
-use crate::unfit::Unfit;
+use crate::unfit::BuildProblem;
 pub use floor::{Block, Floor};
 use node::Node;
 use pieces::{Piece, pieces};
@@ -45,7 +45,11 @@ use writer::Writer;
 ///
 /// # Errors
 /// Returns [`Unfit::Surface`] for a part whose layers do not make a body.
-pub fn mjcf(assembly: &Assembly, neutral: &Solution, scene: &Scene) -> Result<String, Unfit> {
+pub fn mjcf(
+    assembly: &Assembly,
+    neutral: &Solution,
+    scene: &Scene,
+) -> Result<String, BuildProblem> {
     Ok(Pieces::of(assembly, scene)?.mjcf(neutral, scene))
 }
 
@@ -61,7 +65,7 @@ impl<'a> Pieces<'a> {
     ///
     /// # Errors
     /// Returns [`Unfit::Surface`] for a part whose layers do not make a body.
-    pub fn of(assembly: &'a Assembly, scene: &Scene) -> Result<Self, Unfit> {
+    pub fn of(assembly: &'a Assembly, scene: &Scene) -> Result<Self, BuildProblem> {
         let pieces = pieces(assembly, scene)?;
         Ok(Self { assembly, pieces })
     }

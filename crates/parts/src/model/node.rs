@@ -11,7 +11,7 @@ use crate::layers::body::Mount;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Node {
     /// All bodies on one of the assembly's mounts.
-    Of(Mount),
+    OnMount(Mount),
     /// The horn of a servo that has play between horn and link.
     Horn(usize),
     /// The post of a foot with its pad, which moves up and down on the leaf.
@@ -36,7 +36,7 @@ pub(crate) enum Freedom {
 impl Node {
     /// Every body of the robot, each after its parent.
     pub fn all(slotted: bool, play: bool) -> Vec<Self> {
-        let mut all = vec![Self::Of(Mount::Chassis)];
+        let mut all = vec![Self::OnMount(Mount::Chassis)];
         for servo in 0..4 {
             if play {
                 all.push(Self::Horn(servo));
@@ -49,41 +49,42 @@ impl Node {
                 Mount::Foot,
                 Mount::Strut,
             ];
-            all.extend(mounts.map(|mount| Self::Of(mount(servo))));
+            all.extend(mounts.map(|mount| Self::OnMount(mount(servo))));
             all.push(Self::Pad(servo));
             if slotted {
                 all.push(Self::Slot(servo));
             }
         }
         for side in Side::ALL {
-            all.extend([Mount::Sleeve(side), Mount::Rod(side)].map(Self::Of));
+            all.extend([Mount::Sleeve(side), Mount::Rod(side)].map(Self::OnMount));
         }
         all
     }
 
     /// The node's parent; `None` for the chassis.
     pub fn parent(self, play: bool) -> Option<Self> {
-        let chassis = Self::Of(Mount::Chassis);
+        let chassis = Self::OnMount(Mount::Chassis);
         Some(match self {
-            Self::Of(Mount::Chassis) => return None,
-            Self::Of(Mount::Link(servo)) if play => Self::Horn(servo),
-            Self::Horn(_) | Self::Of(Mount::Link(_) | Mount::Crank(_) | Mount::Follower(_)) => {
-                chassis
+            Self::OnMount(Mount::Chassis) => return None,
+            Self::OnMount(Mount::Link(servo)) if play => Self::Horn(servo),
+            Self::Horn(_)
+            | Self::OnMount(Mount::Link(_) | Mount::Crank(_) | Mount::Follower(_)) => chassis,
+            Self::OnMount(Mount::Foot(servo)) => Self::OnMount(Mount::Crank(servo)),
+            Self::OnMount(Mount::Strut(servo) | Mount::Coupler(servo)) => {
+                Self::OnMount(Mount::Link(servo))
             }
-            Self::Of(Mount::Foot(servo)) => Self::Of(Mount::Crank(servo)),
-            Self::Of(Mount::Strut(servo) | Mount::Coupler(servo)) => Self::Of(Mount::Link(servo)),
-            Self::Of(Mount::Sleeve(side)) => Self::Of(Mount::Link(side.servos()[1])),
-            Self::Of(Mount::Rod(side)) => Self::Of(Mount::Sleeve(side)),
-            Self::Pad(servo) => Self::Of(Mount::Foot(servo)),
-            Self::Slot(servo) => Self::Of(Mount::Strut(servo)),
+            Self::OnMount(Mount::Sleeve(side)) => Self::OnMount(Mount::Link(side.servos()[1])),
+            Self::OnMount(Mount::Rod(side)) => Self::OnMount(Mount::Sleeve(side)),
+            Self::Pad(servo) => Self::OnMount(Mount::Foot(servo)),
+            Self::Slot(servo) => Self::OnMount(Mount::Strut(servo)),
         })
     }
 
     /// The node's motion on its parent.
     pub fn freedom(self) -> Freedom {
         match self {
-            Self::Of(Mount::Chassis) => Freedom::Free,
-            Self::Of(Mount::Rod(_)) | Self::Slot(_) => Freedom::SlidesAlongX,
+            Self::OnMount(Mount::Chassis) => Freedom::Free,
+            Self::OnMount(Mount::Rod(_)) | Self::Slot(_) => Freedom::SlidesAlongX,
             Self::Pad(_) => Freedom::SlidesVertically,
             _ => Freedom::Turns,
         }
@@ -92,7 +93,7 @@ impl Node {
     /// The mount whose frame the node uses.
     pub fn frame(self) -> Mount {
         match self {
-            Self::Of(mount) => mount,
+            Self::OnMount(mount) => mount,
             Self::Horn(servo) => Mount::Link(servo),
             Self::Pad(servo) => Mount::Foot(servo),
             Self::Slot(servo) => Mount::Strut(servo),
@@ -103,15 +104,15 @@ impl Node {
     pub fn name(self) -> String {
         let of = |what: &str, name: &str| format!("{what} {name}");
         match self {
-            Self::Of(Mount::Chassis) => "chassis".to_owned(),
-            Self::Of(Mount::Link(servo)) => of("link", NAMES[servo]),
-            Self::Of(Mount::Coupler(servo)) => of("coupler", NAMES[servo]),
-            Self::Of(Mount::Crank(servo)) => of("crank", LEGS[servo]),
-            Self::Of(Mount::Follower(servo)) => of("follower", LEGS[servo]),
-            Self::Of(Mount::Foot(servo)) => of("leg coupler", LEGS[servo]),
-            Self::Of(Mount::Strut(servo)) => of("strut", LEGS[servo]),
-            Self::Of(Mount::Sleeve(side)) => of("sleeve", side.name()),
-            Self::Of(Mount::Rod(side)) => of("rod", side.name()),
+            Self::OnMount(Mount::Chassis) => "chassis".to_owned(),
+            Self::OnMount(Mount::Link(servo)) => of("link", NAMES[servo]),
+            Self::OnMount(Mount::Coupler(servo)) => of("coupler", NAMES[servo]),
+            Self::OnMount(Mount::Crank(servo)) => of("crank", LEGS[servo]),
+            Self::OnMount(Mount::Follower(servo)) => of("follower", LEGS[servo]),
+            Self::OnMount(Mount::Foot(servo)) => of("leg coupler", LEGS[servo]),
+            Self::OnMount(Mount::Strut(servo)) => of("strut", LEGS[servo]),
+            Self::OnMount(Mount::Sleeve(side)) => of("sleeve", side.name()),
+            Self::OnMount(Mount::Rod(side)) => of("rod", side.name()),
             Self::Horn(servo) => of("horn", NAMES[servo]),
             Self::Pad(servo) => of("foot", LEGS[servo]),
             Self::Slot(servo) => of("slot", LEGS[servo]),
@@ -131,7 +132,7 @@ mod tests {
                 assert!(!all[..index].contains(node), "{node:?}");
                 match node.parent(play) {
                     Some(parent) => assert!(all[..index].contains(&parent), "{node:?}"),
-                    None => assert_eq!(*node, Node::Of(Mount::Chassis)),
+                    None => assert_eq!(*node, Node::OnMount(Mount::Chassis)),
                 }
             }
         }

@@ -14,7 +14,7 @@ use crate::layers::body::{Body, Kind, Mount, Prism};
 use crate::layers::outline::Outline;
 use crate::layers::shape::Shape;
 use crate::part::volume;
-use crate::unfit::Unfit;
+use crate::unfit::BuildProblem;
 
 /// Radius of a foot's post about its middle, mm. Layers of the foot that are farther away belong to the leaf and
 /// the column.
@@ -30,7 +30,7 @@ pub(super) struct Piece {
 }
 
 /// Computes the pieces of all parts, with the kind of struts that the scene has.
-pub(super) fn pieces(assembly: &Assembly, scene: &Scene) -> Result<Vec<Piece>, Unfit> {
+pub(super) fn pieces(assembly: &Assembly, scene: &Scene) -> Result<Vec<Piece>, BuildProblem> {
     let slotted = scene.pull.is_some();
     let is_strut = |body: &&Body| matches!(body.mount, Mount::Strut(_));
     let has_spring = |bodies: &[Body]| bodies.iter().any(|body| body.kind == Kind::Spring);
@@ -46,14 +46,14 @@ pub(super) fn pieces(assembly: &Assembly, scene: &Scene) -> Result<Vec<Piece>, U
         let volume = volume(&body.prisms);
         for (node, prisms) in split_by_node(assembly, scene, body) {
             let name = match node {
-                Node::Of(_) => body.name.clone(),
+                Node::OnMount(_) => body.name.clone(),
                 node if body.kind == Kind::Printed => format!("{} of {}", node.name(), body.name),
                 _ => body.name.clone(),
             };
             let solid = Solid::of(&prisms);
             let mesh = Mesh::of(&solid);
             if !solid.is_closed() || !mesh.is_closed() {
-                return Err(Unfit::Surface(name));
+                return Err(BuildProblem::Surface(name));
             }
             pieces.push(Piece {
                 name,
@@ -82,7 +82,7 @@ fn spring(assembly: &Assembly, servo: usize) -> Piece {
         name: format!("spring {}", LEGS[servo]),
         node: Node::Slot(servo),
         kind: Kind::Spring,
-        inertia: shape.scaled(bill::spring(&coil) / shape.mass),
+        inertia: shape.scaled(bill::spring_grams(&coil) / shape.mass),
         mesh,
     }
 }
@@ -96,13 +96,13 @@ fn split_by_node(assembly: &Assembly, scene: &Scene, body: &Body) -> Vec<(Node, 
             let foot = assembly.layout().legs[servo].foot;
             let post = |prism: &Prism| (middle(prism) - foot).length() < POST;
             let (post, rest): (Vec<_>, Vec<_>) = body.prisms.iter().cloned().partition(post);
-            let all = [(Node::Pad(servo), post), (Node::Of(body.mount), rest)].into_iter();
+            let all = [(Node::Pad(servo), post), (Node::OnMount(body.mount), rest)].into_iter();
             let some = all.filter(|(_, prisms)| !prisms.is_empty());
             some.collect()
         }
         Mount::Link(servo) if body.kind == Kind::Horn && scene.play > 0.0 => of(Node::Horn(servo)),
         Mount::Strut(servo) if body.kind == Kind::Spring => of(Node::Slot(servo)),
-        mount => of(Node::Of(mount)),
+        mount => of(Node::OnMount(mount)),
     }
 }
 

@@ -11,7 +11,7 @@ pub struct Scene {
     /// The model's name.
     pub name: String,
     /// Length by which each foot is too long, mm, in servo order.
-    pub long: [f64; 4],
+    pub excess_lengths: [f64; 4],
     /// Stiffness of a foot's leaf, N/mm.
     pub stiffness: f64,
     /// Friction of a pad that slides backward, divided by its friction when it slides forward.
@@ -24,20 +24,20 @@ pub struct Scene {
     pub motors: Motors,
     /// Dry friction of each pin, N mm, in addition to the friction in `motors`; pins at which loops
     /// are closed have no friction.
-    pub pins: f64,
+    pub pin_friction: f64,
     /// The floor under the robot.
     pub floor: Floor,
     /// The shape of the robot's pads.
     pub pads: Pads,
     /// Factor on the masses of all parts that move on the chassis; the mass that they lose is
     /// added to the chassis.
-    pub limbs: f64,
+    pub limb_mass_factor: f64,
     /// True if the servos drive in bursts, as analog ones do.
-    pub bursts: bool,
+    pub drives_in_bursts: bool,
     /// The servos' angles; `None` to let the robot stand.
     pub course: Option<Course>,
     /// True to include the parts' shapes; without them the file is a fiftieth as long.
-    pub shapes: bool,
+    pub has_shapes: bool,
 }
 
 impl Scene {
@@ -48,7 +48,7 @@ impl Scene {
         let stance = ground.stance;
         Self {
             name: "lizard".to_owned(),
-            long: [stance.twist, 0.0, 0.0, 0.0],
+            excess_lengths: [stance.twist, 0.0, 0.0, 0.0],
             stiffness: stance.stiffness,
             ratio: ground.ratio,
             pull: drive.strut().map(|strut| Pull {
@@ -57,13 +57,13 @@ impl Scene {
             }),
             play: drive.play,
             motors: assembly.robot().motors(),
-            pins: 0.0,
+            pin_friction: 0.0,
             floor: Floor::of(assembly.robot()),
             pads: Pads::Domes(assembly.robot().parts().pad.radius),
-            limbs: 1.0,
-            bursts: false,
+            limb_mass_factor: 1.0,
+            drives_in_bursts: false,
             course: None,
-            shapes: true,
+            has_shapes: true,
         }
     }
 }
@@ -98,7 +98,7 @@ pub struct Course {
     /// counter-clockwise positive, servo order.
     pub frames: Vec<[f64; 4]>,
     /// Start of the cycles to measure, s from the first frame.
-    pub begin: f64,
+    pub measure_start: f64,
     /// Period of a cycle, s.
     pub period: f64,
     /// Number of cycles to measure.
@@ -137,7 +137,7 @@ impl Course {
         Self {
             gait: gait.name().to_owned(),
             frames: (0..=last).map(targets).collect(),
-            begin: begin + f64::from(cycles - count) * period,
+            measure_start: begin + f64::from(cycles - count) * period,
             period,
             count,
         }

@@ -6,7 +6,7 @@ use crate::model::closed;
 use crate::model::meshes;
 use crate::model::node::{Freedom, Node};
 use crate::model::scene::Pull;
-use crate::model::text::{MILLI, escaped, metres, round};
+use crate::model::text::{MILLI, escape_attribute, metres, round};
 use crate::model::writer::Writer;
 
 /// The oldest version of SDF in which a pose may be relative to another link.
@@ -15,7 +15,7 @@ const VERSION: &str = "1.7";
 impl Writer<'_> {
     /// Writes the whole file. The meshes are in `folder`, a path or a URL.
     pub(super) fn write_sdf(&mut self, folder: &str) {
-        let name = escaped(&self.scene.name);
+        let name = escape_attribute(&self.scene.name);
         self.xml.declaration();
         self.xml.open(format!(r#"sdf version="{VERSION}""#));
         self.xml.open(format!(r#"model name="{name}""#));
@@ -25,7 +25,7 @@ impl Writer<'_> {
         for node in self.nodes() {
             self.write_sdf_joint(node);
         }
-        for closed in closed::all(self.assembly, self.scene.pull.is_some()) {
+        for closed in closed::cut_joints(self.assembly, self.scene.pull.is_some()) {
             let [first, second] = closed.bodies.map(Node::identifier);
             // A ball is enough: all axes are vertical already, and a hinge would constrain their direction twice.
             self.write_sdf_connection(&closed.identifier(), "ball", &first, &second);
@@ -40,11 +40,11 @@ impl Writer<'_> {
         self.xml
             .open(format!(r#"link name="{}""#, node.identifier()));
         let place = self.place_on_parent(node);
-        let turn = place.turn.angle().to_radians();
+        let turn = place.x_axis.angle().to_radians();
         match self.parent(node) {
             Some(parent) => {
                 let pose = format!(r#"pose relative_to="{}""#, parent.identifier());
-                self.write_pose(&pose, [place.at.x, place.at.y, 0.0], turn);
+                self.write_pose(&pose, [place.origin.x, place.origin.y, 0.0], turn);
             }
             // The model's x axis points ahead, its y axis to the left.
             None => self.write_pose("pose", [0.0, 0.0, self.height()], turn - FRAC_PI_2),
@@ -60,12 +60,12 @@ impl Writer<'_> {
         }
         self.xml.close();
         self.xml.close();
-        for look in meshes::looks(self.visible_pieces(), node) {
+        for look in meshes::materials_of(self.visible_pieces(), node) {
             self.xml.open(format!(r#"visual name="{}""#, look.name));
             self.xml.open("geometry");
             self.xml.open("mesh");
-            let file = format!("{folder}{}", meshes::file(node, look));
-            self.xml.value("uri", escaped(&file));
+            let file = format!("{folder}{}", meshes::mesh_file_name(node, look));
+            self.xml.value("uri", escape_attribute(&file));
             self.xml.value("scale", "0.001 0.001 0.001");
             self.xml.close();
             self.xml.close();
@@ -123,7 +123,7 @@ impl Writer<'_> {
             self.xml.open("limit");
             self.xml.value("lower", smallest);
             self.xml.value("upper", largest);
-            if let Some(servo) = self.motor_on(node) {
+            if let Some(servo) = self.driving_servo(node) {
                 let motor = &self.scene.motors.each[servo];
                 self.xml.value("effort", round(motor.stall * MILLI));
                 self.xml
@@ -148,7 +148,7 @@ impl Writer<'_> {
     /// a joint without a spring.
     fn spring(&self, node: Node) -> Option<[f64; 2]> {
         match (node, self.scene.pull) {
-            (Node::Pad(_), _) => Some([0.0, self.leaf()[0]]),
+            (Node::Pad(_), _) => Some([0.0, self.leaf_spring()[0]]),
             (Node::Slot(_), Some(Pull { force, rate })) => {
                 Some([-force / rate * MILLI, rate / MILLI].map(round))
             }

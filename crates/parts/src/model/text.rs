@@ -16,7 +16,7 @@ pub(super) fn round(value: f64) -> f64 {
 }
 
 /// Joins numbers with blanks.
-pub(super) fn joined(numbers: impl IntoIterator<Item = impl ToString>) -> String {
+pub(super) fn join_numbers(numbers: impl IntoIterator<Item = impl ToString>) -> String {
     let numbers: Vec<_> = numbers
         .into_iter()
         .map(|number| number.to_string())
@@ -25,7 +25,7 @@ pub(super) fn joined(numbers: impl IntoIterator<Item = impl ToString>) -> String
 }
 
 /// Escapes a text for use as the value of an attribute.
-pub(super) fn escaped(value: &str) -> String {
+pub(super) fn escape_attribute(value: &str) -> String {
     let value = value.replace('&', "&amp;").replace('<', "&lt;");
     value.replace('"', "&quot;")
 }
@@ -49,7 +49,7 @@ impl Xml {
     }
 
     /// Writes an element without children.
-    pub fn leaf(&mut self, element: impl Display) {
+    pub fn write_empty_element(&mut self, element: impl Display) {
         self.line(format_args!("<{element}/>"));
     }
 

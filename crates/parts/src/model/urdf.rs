@@ -13,7 +13,7 @@ use crate::model::closed::{self, LoopJoint};
 use crate::model::looks::Material;
 use crate::model::meshes;
 use crate::model::node::{Freedom, Node};
-use crate::model::text::{MILLI, escaped, metres, round};
+use crate::model::text::{MILLI, escape_attribute, metres, round};
 use crate::model::writer::Writer;
 
 /// The link on the floor under the chassis: x ahead, y to the left, z up, as ROS requires.
@@ -22,20 +22,22 @@ const BASE: &str = "base_link";
 impl Writer<'_> {
     /// Writes the whole file. The meshes are in `folder`, a path or a URL.
     pub(super) fn write_urdf(&mut self, folder: &str) {
-        let name = escaped(&self.scene.name);
+        let name = escape_attribute(&self.scene.name);
         self.xml.declaration();
         self.xml.open(format!(r#"robot name="{name}""#));
         for Material { name, colour } in Material::ALL {
             self.xml.open(format!(r#"material name="{name}""#));
-            self.xml.leaf(format!(r#"color rgba="{colour}""#));
+            self.xml
+                .write_empty_element(format!(r#"color rgba="{colour}""#));
             self.xml.close();
         }
-        self.xml.leaf(format!(r#"link name="{BASE}""#));
+        self.xml
+            .write_empty_element(format!(r#"link name="{BASE}""#));
         for node in self.nodes() {
             self.write_urdf_link(node, folder);
             self.write_urdf_joint(node);
         }
-        for closed in closed::all(self.assembly, self.scene.pull.is_some()) {
+        for closed in closed::cut_joints(self.assembly, self.scene.pull.is_some()) {
             self.write_coinciding_frames(&closed);
         }
     }
@@ -48,20 +50,21 @@ impl Writer<'_> {
         self.xml.open("inertial");
         self.write_origin(mass.centre(), 0.0);
         self.xml
-            .leaf(format!(r#"mass value="{}""#, round(mass.mass * MILLI)));
-        self.xml.leaf(format!(
+            .write_empty_element(format!(r#"mass value="{}""#, round(mass.mass * MILLI)));
+        self.xml.write_empty_element(format!(
             r#"inertia ixx="{xx}" iyy="{yy}" izz="{zz}" ixy="{xy}" ixz="{xz}" iyz="{yz}""#
         ));
         self.xml.close();
-        for look in meshes::looks(self.visible_pieces(), node) {
+        for look in meshes::materials_of(self.visible_pieces(), node) {
             self.xml.open("visual");
             self.xml.open("geometry");
-            let file = escaped(&format!("{folder}{}", meshes::file(node, look)));
-            self.xml.leaf(format!(
+            let file = escape_attribute(&format!("{folder}{}", meshes::mesh_file_name(node, look)));
+            self.xml.write_empty_element(format!(
                 r#"mesh filename="{file}" scale="0.001 0.001 0.001""#
             ));
             self.xml.close();
-            self.xml.leaf(format!(r#"material name="{}""#, look.name));
+            self.xml
+                .write_empty_element(format!(r#"material name="{}""#, look.name));
             self.xml.close();
         }
         if let Node::Pad(servo) = node {
@@ -69,7 +72,8 @@ impl Writer<'_> {
             self.write_origin(self.pad_middle(servo), 0.0);
             self.xml.open("geometry");
             let radius = round(self.assembly.robot().parts().pad.radius * MILLI);
-            self.xml.leaf(format!(r#"sphere radius="{radius}""#));
+            self.xml
+                .write_empty_element(format!(r#"sphere radius="{radius}""#));
             self.xml.close();
             self.xml.close();
         }
@@ -90,18 +94,19 @@ impl Writer<'_> {
             Some(parent) => (parent.identifier(), 0.0, 0.0),
             None => (BASE.to_owned(), self.height(), -FRAC_PI_2),
         };
-        let turn = place.turn.angle().to_radians() + turned;
+        let turn = place.x_axis.angle().to_radians() + turned;
         let name = self.joint_name(node);
         self.write_urdf_connection(&name, kind, &parent, &node.identifier());
-        self.write_origin([place.at.x, place.at.y, up], turn);
+        self.write_origin([place.origin.x, place.origin.y, up], turn);
         if kind != "fixed" {
             let axis = match node.freedom() {
                 Freedom::SlidesAlongX => "1 0 0",
                 _ => "0 0 1",
             };
-            self.xml.leaf(format!(r#"axis xyz="{axis}""#));
+            self.xml
+                .write_empty_element(format!(r#"axis xyz="{axis}""#));
             if let Some([smallest, largest]) = range {
-                let (effort, rate) = match self.motor_on(node) {
+                let (effort, rate) = match self.driving_servo(node) {
                     Some(servo) => {
                         let motor = &self.scene.motors.each[servo];
                         (motor.stall * MILLI, motor.no_load_speed.to_radians())
@@ -110,19 +115,19 @@ impl Writer<'_> {
                     None => (0.0, 0.0),
                 };
                 let (effort, rate) = (round(effort), round(rate));
-                self.xml.leaf(format!(
+                self.xml.write_empty_element(format!(
                     r#"limit lower="{smallest}" upper="{largest}" effort="{effort}" velocity="{rate}""#
                 ));
             }
             let [damping, friction] = self.resistance(node);
-            self.xml.leaf(format!(
+            self.xml.write_empty_element(format!(
                 r#"dynamics damping="{damping}" friction="{friction}""#
             ));
         }
         if let Some((servo, factor)) = mimicked_servo(node) {
             let servo = NAMES[servo];
             self.xml
-                .leaf(format!(r#"mimic joint="{servo}" multiplier="{factor}""#));
+                .write_empty_element(format!(r#"mimic joint="{servo}" multiplier="{factor}""#));
         }
         self.xml.close();
     }
@@ -131,14 +136,16 @@ impl Writer<'_> {
     fn write_urdf_connection(&mut self, name: &str, kind: &str, parent: &str, child: &str) {
         self.xml
             .open(format!(r#"joint name="{name}" type="{kind}""#));
-        self.xml.leaf(format!(r#"parent link="{parent}""#));
-        self.xml.leaf(format!(r#"child link="{child}""#));
+        self.xml
+            .write_empty_element(format!(r#"parent link="{parent}""#));
+        self.xml
+            .write_empty_element(format!(r#"child link="{child}""#));
     }
 
     fn write_origin(&mut self, at: [f64; 3], turn: f64) {
         let (at, turn) = (metres(at), round(turn));
         self.xml
-            .leaf(format!(r#"origin xyz="{at}" rpy="0 0 {turn}""#));
+            .write_empty_element(format!(r#"origin xyz="{at}" rpy="0 0 {turn}""#));
     }
 
     /// Writes the two frames of a joint that closes a loop, one on each body.
@@ -148,7 +155,8 @@ impl Writer<'_> {
         let on_second = self.place(second).unmap(point);
         for (number, (node, at)) in [(first, closed.at), (second, on_second)].iter().enumerate() {
             let frame = format!("closing_{}_{}", closed.identifier(), number + 1);
-            self.xml.leaf(format!(r#"link name="{frame}""#));
+            self.xml
+                .write_empty_element(format!(r#"link name="{frame}""#));
             let joint = format!("{frame}_joint");
             self.write_urdf_connection(&joint, "fixed", &node.identifier(), &frame);
             self.write_origin([at.x, at.y, 0.0], 0.0);
@@ -160,10 +168,10 @@ impl Writer<'_> {
 /// The servo whose angle a body's joint follows, and the factor (1 or -1); `None` if the joint follows no servo.
 fn mimicked_servo(node: Node) -> Option<(usize, i8)> {
     match node {
-        Node::Of(Mount::Crank(servo) | Mount::Follower(servo)) => Some((servo, 1)),
+        Node::OnMount(Mount::Crank(servo) | Mount::Follower(servo)) => Some((servo, 1)),
         // Feet and struts keep their direction on the chassis, so on their turning parent they turn by the
         // opposite angle.
-        Node::Of(Mount::Foot(servo) | Mount::Strut(servo)) => Some((servo, -1)),
+        Node::OnMount(Mount::Foot(servo) | Mount::Strut(servo)) => Some((servo, -1)),
         _ => None,
     }
 }

@@ -38,7 +38,7 @@ impl<'a> Writer<'a> {
 
     /// The parts whose shapes go into the file.
     pub(super) fn visible_pieces(&self) -> &'a [Piece] {
-        match self.scene.shapes {
+        match self.scene.has_shapes {
             true => self.pieces,
             false => &[],
         }
@@ -57,14 +57,14 @@ impl<'a> Writer<'a> {
     /// The place of a body on its parent.
     pub(super) fn place_on_parent(&self, node: Node) -> Placement {
         match self.parent(node) {
-            Some(parent) => self.place(node).seen_from(&self.place(parent)),
+            Some(parent) => self.place(node).relative_to(&self.place(parent)),
             None => Placement::CHASSIS,
         }
     }
 
     /// Height of the chassis frame, mm, at which the pad of the longest foot touches the floor.
     pub(super) fn height(&self) -> f64 {
-        self.scene.long.into_iter().fold(0.0, f64::max) - self.assembly.stack().floor
+        self.scene.excess_lengths.into_iter().fold(0.0, f64::max) - self.assembly.stack().floor
     }
 
     /// The mass and the inertia of a body.
@@ -72,7 +72,7 @@ impl<'a> Writer<'a> {
         let own = self.pieces.iter().filter(|piece| piece.node == node);
         let drawn = own.fold(Inertia::default(), |sum, piece| sum.plus(&piece.inertia));
         match self.parent(node) {
-            Some(_) => drawn.scaled(self.scene.limbs),
+            Some(_) => drawn.scaled(self.scene.limb_mass_factor),
             None => self
                 .chassis_mass(&drawn)
                 .plus(&Inertia::point(self.limbs_lost())),
@@ -83,7 +83,7 @@ impl<'a> Writer<'a> {
     fn limbs_lost(&self) -> f64 {
         let limbs = self.pieces.iter();
         let limbs = limbs.filter(|piece| self.parent(piece.node).is_some());
-        (1.0 - self.scene.limbs) * limbs.map(|piece| piece.inertia.mass).sum::<f64>()
+        (1.0 - self.scene.limb_mass_factor) * limbs.map(|piece| piece.inertia.mass).sum::<f64>()
     }
 
     /// The chassis, adjusted so that the whole robot has the mass and the mass centre of `[body]`. The mass of what
@@ -103,7 +103,7 @@ impl<'a> Writer<'a> {
     }
 
     /// Stiffness of a foot's leaf, N/m, and its damping, N s/m.
-    pub(super) fn leaf(&self) -> [f64; 2] {
+    pub(super) fn leaf_spring(&self) -> [f64; 2] {
         let stiffness = self.scene.stiffness / MILLI;
         let quarter = self.assembly.robot().ground().body.mass * MILLI / 4.0;
         let damping = DAMPING * 2.0 * (stiffness * quarter).sqrt();
@@ -115,15 +115,15 @@ impl<'a> Writer<'a> {
     pub(super) fn pad_middle(&self, servo: usize) -> [f64; 3] {
         let foot = self.assembly.layout().legs[servo].foot;
         let radius = self.assembly.robot().parts().pad.radius;
-        let z = self.assembly.stack().floor - self.scene.long[servo] + radius;
+        let z = self.assembly.stack().floor - self.scene.excess_lengths[servo] + radius;
         [foot.x, foot.y, z]
     }
 
     /// The servo whose motor turns a body, if any.
-    pub(super) fn motor_on(&self, node: Node) -> Option<usize> {
+    pub(super) fn driving_servo(&self, node: Node) -> Option<usize> {
         match node {
             Node::Horn(servo) => Some(servo),
-            Node::Of(Mount::Link(servo)) if !self.has_play() => Some(servo),
+            Node::OnMount(Mount::Link(servo)) if !self.has_play() => Some(servo),
             _ => None,
         }
     }

@@ -30,7 +30,7 @@ const HEX_KEY: f64 = 1.2;
 /// Wall thickness of a socket around a nut, and the socket's length beyond the nut, mm.
 pub const SOCKET: [f64; 2] = [1.0, 10.0];
 /// Angles by which one servo is turned in the search for a pose, deg.
-const TURNS: [f64; 12] = [
+const SEARCH_ANGLES: [f64; 12] = [
     5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 55.0, 60.0,
 ];
 /// Number of angles per servo in the grid of poses that are searched if turning one servo is not enough.
@@ -50,7 +50,7 @@ pub enum ScrewOperation {
 /// A screw that another body blocks.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{screw} {operation} at step {step} of the guide: {by} is in the way")]
-pub struct Blocked {
+pub struct BlockedScrew {
     /// The step of the guide, from 1.
     pub step: usize,
     /// The name of the screw.
@@ -95,9 +95,9 @@ struct Axis {
     radius: f64,
     length: f64,
     /// Height of the head's outer face, mm.
-    end: f64,
+    head_height: f64,
     /// 1 if the head is at the top, else -1.
-    up: f64,
+    direction: f64,
 }
 
 impl Axis {
@@ -127,18 +127,18 @@ impl Bench<'_> {
             Kind::ServoScrew => SERVO_SCREW,
             _ => return None,
         };
-        let width = |i: usize| body.prisms[i].add[0].width();
+        let width = |i: usize| body.prisms[i].filled_shapes[0].width();
         let last = body.prisms.len().checked_sub(1)?;
         // A screw's head is its widest layer.
         let head = (0..=last).max_by(|a, b| width(*a).total_cmp(&width(*b)))?;
         let (is_above, prism) = (head == last, &body.prisms[head]);
         let place = self.assembly.place(body.mount, self.pose);
         Some(Axis {
-            at: place.map(prism.add[0].middle()),
-            radius: prism.add[0].width() / 2.0,
+            at: place.map(prism.filled_shapes[0].middle()),
+            radius: prism.filled_shapes[0].width() / 2.0,
             length,
-            end: prism.z[usize::from(is_above)],
-            up: if is_above { 1.0 } else { -1.0 },
+            head_height: prism.z[usize::from(is_above)],
+            direction: if is_above { 1.0 } else { -1.0 },
         })
     }
 
@@ -153,17 +153,19 @@ impl Bench<'_> {
         let meets = |shape: &Shape| room.shape.distance(&shape.placed(&place)) < -TOUCH;
         let encloses = |hole: &Shape| room.shape.depth_in(&hole.placed(&place), still) > -TOUCH;
         let mut prisms = body.prisms.iter().filter(|prism| !is_beside(prism.z));
-        prisms.any(|prism| prism.add.iter().any(meets) && !prism.cut.iter().any(encloses))
+        prisms.any(|prism| {
+            prism.filled_shapes.iter().any(meets) && !prism.cut_shapes.iter().any(encloses)
+        })
     }
 
     /// The space that a nut needs on its screw.
-    fn nut(&self, nut: &Body, axis: &Axis, around: &[&Body]) -> FreeSpace {
+    fn nut_space(&self, nut: &Body, axis: &Axis, around: &[&Body]) -> FreeSpace {
         let place = self.assembly.place(nut.mount, self.pose);
-        let flats = nut.prisms[0].add[0].placed(&place);
+        let flats = nut.prisms[0].filled_shapes[0].placed(&place);
         let corner = (flats.points[0] - axis.at).length();
         // The face that touches the part, and the outer face.
         let [low, high] = nut.z();
-        let (bears, end) = match axis.up > 0.0 {
+        let (bears, end) = match axis.direction > 0.0 {
             true => (high, low),
             false => (low, high),
         };
@@ -175,9 +177,9 @@ impl Bench<'_> {
         let is_sunk = fixed.any(|body| {
             body.prisms
                 .iter()
-                .any(|prism| prism.cut.iter().any(encloses))
+                .any(|prism| prism.cut_shapes.iter().any(encloses))
         });
-        let length = -axis.up * SOCKET[1];
+        let length = -axis.direction * SOCKET[1];
         match is_sunk {
             true => FreeSpace {
                 shape: flats,
@@ -213,7 +215,7 @@ impl Bench<'_> {
         let others: Vec<&Body> = others.filter(|body| !is_pad(body)).copied().collect();
         let mut rooms = Vec::new();
         if is_new {
-            let room = axis.room(axis.radius, axis.end, axis.up * axis.length);
+            let room = axis.room(axis.radius, axis.head_height, axis.direction * axis.length);
             rooms.push((ScrewOperation::Push, room));
         }
         // A hexagonal head is held by its pocket.
@@ -221,12 +223,12 @@ impl Bench<'_> {
         // The pad of a height screw, if the hex key does not fit through the pad's hole.
         let mut through = None;
         if turns && complete && (is_new || new_nut.is_some() || is_turned_later) {
-            let key = |radius| axis.room(radius, axis.end, axis.up * KEY[1]);
+            let key = |radius| axis.room(radius, axis.head_height, axis.direction * KEY[1]);
             rooms.push((ScrewOperation::Turn, key(KEY[0])));
             through = pad.filter(|pad| is_in(around, pad) && self.fills(pad, &key(HEX_KEY)));
         }
         if let Some(nut) = new_nut {
-            rooms.push((ScrewOperation::Nut, self.nut(nut, &axis, &others)));
+            rooms.push((ScrewOperation::Nut, self.nut_space(nut, &axis, &others)));
         }
         let blocked = |(operation, room): (ScrewOperation, FreeSpace)| {
             let by = others.iter().find(|body| self.fills(body, &room))?;
@@ -243,7 +245,7 @@ impl Bench<'_> {
 
 impl Assembly {
     /// The screws that cannot be inserted or turned in the order of these steps, with the servos at a pose.
-    pub fn blocked(&self, steps: &[Step], pose: &Solution) -> Vec<Blocked> {
+    pub fn blocked(&self, steps: &[Step], pose: &Solution) -> Vec<BlockedScrew> {
         let bench = Bench {
             assembly: self,
             pose,
@@ -260,7 +262,7 @@ impl Assembly {
                 for screw in self.bodies() {
                     let is_on_same_servos =
                         |body: &&&Body| body.mount.servos() == screw.mount.servos();
-                    let around: Vec<_> = match stage.at {
+                    let around: Vec<_> = match stage.turning_place {
                         TurningPlace::Robot => before.clone(),
                         TurningPlace::Bench => before[begin..]
                             .iter()
@@ -272,7 +274,7 @@ impl Assembly {
                     let blocked = bench
                         .obstacles(screw, &new, &around, is_turned_later)
                         .into_iter();
-                    all_blocked.extend(blocked.map(|(operation, by)| Blocked {
+                    all_blocked.extend(blocked.map(|(operation, by)| BlockedScrew {
                         step: number,
                         screw: screw.name.clone(),
                         operation,
@@ -289,7 +291,7 @@ impl Assembly {
     ///
     /// # Errors
     /// Returns a screw that cannot be reached at neutral or at any of the poses that are tried.
-    pub fn access_poses(&self, steps: &[Step]) -> Result<Vec<AccessPose>, Blocked> {
+    pub fn access_poses(&self, steps: &[Step]) -> Result<Vec<AccessPose>, BlockedScrew> {
         let mut access_poses: Vec<AccessPose> = Vec::new();
         let neutral = self.robot().neutral();
         let Ok(solution) = self.robot().lizard().solve(&neutral) else {
@@ -301,9 +303,10 @@ impl Assembly {
         }
         for pose in self.poses_near(neutral) {
             let still = self.blocked(steps, &pose);
-            let reached = |obstacle: &mut Blocked| {
-                let is_same_screw =
-                    |other: &Blocked| other.step == obstacle.step && other.screw == obstacle.screw;
+            let reached = |obstacle: &mut BlockedScrew| {
+                let is_same_screw = |other: &BlockedScrew| {
+                    other.step == obstacle.step && other.screw == obstacle.screw
+                };
                 !still.iter().any(is_same_screw)
             };
             let angles: [f64; 4] = pose.pose.into();
@@ -334,7 +337,7 @@ impl Assembly {
     fn poses_near(&self, neutral: Pose) -> Vec<Solution> {
         let from: [f64; 4] = neutral.into();
         let mut poses = Vec::new();
-        for turn in TURNS {
+        for turn in SEARCH_ANGLES {
             for (servo, turn) in (0..4).flat_map(|servo| [(servo, turn), (servo, -turn)]) {
                 let mut angles = from;
                 angles[servo] += turn;

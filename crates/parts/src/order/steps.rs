@@ -42,7 +42,7 @@ pub enum ExtraView {
 /// Bodies that are added together.
 pub struct Stage {
     /// The place where the stage's screws are turned.
-    pub at: TurningPlace,
+    pub turning_place: TurningPlace,
     /// True for a body that the stage adds, unless an earlier stage has added it.
     pub adds: fn(&Body) -> bool,
     /// True for a screw that an earlier stage added and that is turned again.
@@ -76,23 +76,27 @@ pub(crate) fn step_and_stage(steps: &[Step], body: &Body) -> (usize, usize) {
 }
 
 /// True if a body's name starts with one of the given texts.
-fn named(body: &Body, starts: &[&str]) -> bool {
+fn has_name_prefix(body: &Body, starts: &[&str]) -> bool {
     starts.iter().any(|start| body.name.starts_with(start))
 }
 
 /// A stage on the robot, without screws that are turned again.
-fn robot(adds: fn(&Body) -> bool) -> Stage {
+fn robot_stage(adds: fn(&Body) -> bool) -> Stage {
     stage(TurningPlace::Robot, adds)
 }
 
 /// A stage on the bench, without screws that are turned again.
-fn bench(adds: fn(&Body) -> bool) -> Stage {
+fn bench_stage(adds: fn(&Body) -> bool) -> Stage {
     stage(TurningPlace::Bench, adds)
 }
 
 fn stage(at: TurningPlace, adds: fn(&Body) -> bool) -> Stage {
     let turns = |_: &Body| false;
-    Stage { at, adds, turns }
+    Stage {
+        turning_place: at,
+        adds,
+        turns,
+    }
 }
 
 /// A step with the instructions from `steps.md` below its title.
@@ -146,7 +150,7 @@ fn chassis() -> Step {
         Kind::ServoScrew => 1.6,
         _ => 1.0,
     };
-    let all = robot(|body| {
+    let all = robot_stage(|body| {
         let below = body.name.starts_with("screw standoff") && body.name.ends_with("below");
         let kinds = matches!(
             body.kind,
@@ -163,9 +167,9 @@ fn supply() -> Step {
         Kind::Fitting(_) if body.name == "battery strap" => 0.0,
         _ => -0.7,
     };
-    let all = robot(|body| {
+    let all = robot_stage(|body| {
         let names = ["battery", "ground strip", "supply strip", "capacitor"];
-        named(body, &names)
+        has_name_prefix(body, &names)
     });
     step(
         "Strips, battery and capacitor",
@@ -178,13 +182,13 @@ fn supply() -> Step {
 fn board() -> Step {
     let lift = |body: &Body| match body.kind {
         Kind::Board => 1.3,
-        Kind::Fitting(_) if named(body, &["converter", "alarm"]) => 0.3,
+        Kind::Fitting(_) if has_name_prefix(body, &["converter", "alarm"]) => 0.3,
         Kind::Fitting(_) => 1.1,
         Kind::Screw(_) if body.name.contains("board") => 1.8,
         Kind::Screw(_) => 1.1,
         _ => 0.8,
     };
-    let deck = robot(|body| {
+    let deck = robot_stage(|body| {
         let above = body.name.starts_with("screw standoff") && body.name.ends_with("above");
         let below = ["deck", "converter", "alarm"];
         let wings = [
@@ -195,9 +199,9 @@ fn board() -> Step {
             "plus way",
             "fuse",
         ];
-        named(body, &below) || named(body, &wings) || above
+        has_name_prefix(body, &below) || has_name_prefix(body, &wings) || above
     });
-    let board = robot(|body| named(body, &["board", "screw board"]));
+    let board = robot_stage(|body| has_name_prefix(body, &["board", "screw board"]));
     step(
         "Deck, board and wires",
         lift,
@@ -213,9 +217,9 @@ fn links() -> Step {
         Kind::Printed => 0.8,
         _ => 0.3,
     };
-    let all = bench(|body| {
+    let all = bench_stage(|body| {
         let horn = matches!(body.kind, Kind::Horn | Kind::HornScrew(_));
-        horn || named(body, &["link", "screw tip", "screw arm"])
+        horn || has_name_prefix(body, &["link", "screw tip", "screw arm"])
     });
     step("Horns and links", lift, ExtraView::Corner, vec![all])
 }
@@ -228,13 +232,13 @@ fn legs() -> Step {
         _ if body.name.starts_with("nut") && !body.name.contains("anchor") => 0.5,
         _ => 0.0,
     };
-    let joints = bench(|body| {
+    let joints = bench_stage(|body| {
         let bars = ["leg coupler", "crank", "follower", "nut leg anchor"];
         let joint = ["crank joint", "follower joint"].map(|joint| body.name.contains(joint));
-        named(body, &bars) || joint.contains(&true)
+        has_name_prefix(body, &bars) || joint.contains(&true)
     });
-    let foot = bench(|body| matches!(body.mount, Mount::Foot(_)) && !is_height(body));
-    let height = bench(is_height);
+    let foot = bench_stage(|body| matches!(body.mount, Mount::Foot(_)) && !is_height(body));
+    let height = bench_stage(is_height);
     step(
         "Legs, on the bench",
         lift,
@@ -245,13 +249,13 @@ fn legs() -> Step {
 
 /// True for a pad and for the screw in it, which sets the height of its foot.
 fn is_height(body: &Body) -> bool {
-    body.kind == Kind::Pad || named(body, &["screw height"])
+    body.kind == Kind::Pad || has_name_prefix(body, &["screw height"])
 }
 
 fn level() -> Step {
     let turned = Stage {
-        turns: |body| named(body, &["screw height"]),
-        ..robot(|_| false)
+        turns: |body| has_name_prefix(body, &["screw height"]),
+        ..robot_stage(|_| false)
     };
     step("Level the feet", |_| 0.0, ExtraView::None, vec![turned])
 }
@@ -261,7 +265,7 @@ fn legs_on_plate() -> Step {
         Kind::Nut => -0.7,
         _ => 1.0,
     };
-    let all = robot(|body| body.name.contains("pivot"));
+    let all = robot_stage(|body| body.name.contains("pivot"));
     step("Legs on the plate", lift, ExtraView::CornerBelow, vec![all])
 }
 
@@ -272,10 +276,11 @@ fn struts(is_slotted: bool) -> Step {
         Kind::Printed if body.name.starts_with("strut ring") => 0.5,
         _ => 0.3,
     };
-    let on_leg = robot(|body| {
+    let on_leg = robot_stage(|body| {
         matches!(body.mount, Mount::Strut(_)) || body.name.starts_with("screw leg anchor")
     });
-    let on_link = robot(|body| named(body, &["strut ring", "screw anchor", "nut anchor"]));
+    let on_link =
+        robot_stage(|body| has_name_prefix(body, &["strut ring", "screw anchor", "nut anchor"]));
     let title = match is_slotted {
         true => "Struts and springs",
         false => "Struts",
@@ -289,9 +294,9 @@ fn sliders() -> Step {
         Kind::Printed if body.name.starts_with("arm") => 0.3,
         _ => 0.8,
     };
-    let all = robot(|body| {
+    let all = robot_stage(|body| {
         let slider = matches!(body.mount, Mount::Sleeve(_) | Mount::Rod(_));
-        slider || named(body, &["arm spacer", "nut arm"])
+        slider || has_name_prefix(body, &["arm spacer", "nut arm"])
     });
     step("Sliders", lift, ExtraView::None, vec![all])
 }
@@ -303,14 +308,14 @@ fn ends() -> Step {
         Kind::Printed if body.name.starts_with("tip") => 0.3,
         _ => 0.9,
     };
-    let couplers = bench(|body| {
+    let couplers = bench_stage(|body| {
         let carried = ["head plate", "tail ", "screw head plate", "screw tail "];
-        named(body, &["coupler"]) || named(body, &carried)
+        has_name_prefix(body, &["coupler"]) || has_name_prefix(body, &carried)
     });
-    let joints = robot(|body| {
-        matches!(body.mount, Mount::Coupler(_)) || named(body, &["tip spacer", "nut tip"])
+    let joints = robot_stage(|body| {
+        matches!(body.mount, Mount::Coupler(_)) || has_name_prefix(body, &["tip spacer", "nut tip"])
     });
-    let plug = robot(|body| named(body, &["round plug"]));
+    let plug = robot_stage(|body| has_name_prefix(body, &["round plug"]));
     step(
         "Head and tail",
         lift,

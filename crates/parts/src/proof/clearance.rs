@@ -61,7 +61,10 @@ impl Assembly {
                     .flat_map(|p| b.prisms.iter().map(move |q| (p, q)));
                 let level = |(p, q): &(&Prism, &Prism)| p.z[0] < q.z[1] && q.z[0] < p.z[1];
                 for (p, q) in layers.filter(|layers| !self.may_touch(a, b) && level(layers)) {
-                    let shapes = p.add.iter().flat_map(|a| q.add.iter().map(move |b| (a, b)));
+                    let shapes = p
+                        .filled_shapes
+                        .iter()
+                        .flat_map(|a| q.filled_shapes.iter().map(move |b| (a, b)));
                     pairs.extend(shapes.map(|(a, b)| ([i, j], [(a, disc(a)), (b, disc(b))])));
                 }
             }

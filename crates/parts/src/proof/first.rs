@@ -20,7 +20,7 @@ const WORST: usize = 3;
 
 /// Returns the [`WORST`] tasks whose parts come nearest, out of those whose parts come too near at one of the checked
 /// poses; `None` if no parts come too near.
-pub fn worst(assembly: &Assembly, tasks: &[Task]) -> Option<Vec<Task>> {
+pub fn worst_tasks(assembly: &Assembly, tasks: &[Task]) -> Option<Vec<Task>> {
     let robot = assembly.robot();
     let mut poses: Vec<Solution> = robot.accepted(robot.neutral().into()).into_iter().collect();
     poses.extend((0..81).filter_map(|direction| last_accepted_pose(robot, direction)));
@@ -40,7 +40,7 @@ pub fn worst(assembly: &Assembly, tasks: &[Task]) -> Option<Vec<Task>> {
 /// The least distance of a task's parts at a pose, mm; infinite if they are certainly far enough apart.
 fn distance(assembly: &Assembly, task: &Task, pose: &Solution) -> f64 {
     let [a, b] = task.mounts.map(|mount| assembly.place(mount, pose));
-    let place = b.seen_from(&a);
+    let place = b.relative_to(&a);
     let shape_pairs = task.shape_pairs.iter();
     let near = shape_pairs.filter(|pair| !pair.is_far(&place, [0.0; 2], task.min_distance()));
     let distances = near.map(|pair| pair.distance(&place));

@@ -17,18 +17,18 @@ use crate::bodies::joints::Cranks;
 const SINE_RELAXATION: f64 = 0.005;
 /// Type-2 limit below which the relaxation grows in proportion: the closer two couplers are to alignment, the more
 /// a rounded length turns them.
-const TYPE2: f64 = 0.3;
+const FULL_RELAXATION_TYPE2: f64 = 0.3;
 /// Relaxation of a slider's stroke and of crossed crank tips, mm.
 const LENGTH_RELAXATION_MM: f64 = 0.1;
 /// Resolution of the bounds of a servo's range in [`Guard::range_end`], deg.
-const FINE: f64 = 0.01;
+const RANGE_RESOLUTION_DEG: f64 = 0.01;
 /// Resolution of the angle of a pair's other servo in [`Guard::range_end`], deg.
-const COARSE: f64 = 0.2;
+const OTHER_RESOLUTION_DEG: f64 = 0.2;
 /// Largest number of regions that [`Guard::find_pose`] searches.
 const ATTEMPTS: u32 = 300;
 
 /// A key that orders numbers as [`f64::total_cmp`] does.
-pub fn ordered(value: f64) -> i64 {
+pub fn total_order_key(value: f64) -> i64 {
     let bits = value.to_bits() as i64;
     bits ^ (((bits >> 63) as u64) >> 1) as i64
 }
@@ -68,7 +68,7 @@ impl<const N: usize> Region<N> {
 }
 
 /// Cranks at some angles. The cranks of other servos get a dummy direction.
-fn turned<'a, const N: usize, T: Real>(
+fn cranks_at<'a, const N: usize, T: Real>(
     robot: &'a Robot,
     servos: &[usize; N],
     angles: [T; N],
@@ -94,7 +94,7 @@ pub struct Guard<'a> {
 impl<'a> Guard<'a> {
     pub fn new(robot: &'a Robot) -> Self {
         let limits = robot.limits();
-        let sine = SINE_RELAXATION * (TYPE2 / limits.type2).max(1.0);
+        let sine = SINE_RELAXATION * (FULL_RELAXATION_TYPE2 / limits.type2).max(1.0);
         let mut guard = Self {
             robot,
             limits: Limits {
@@ -134,15 +134,15 @@ impl<'a> Guard<'a> {
             if self.refuses(&pair, &region) {
                 continue;
             }
-            let mut min = [COARSE; 2];
-            min[index] = FINE;
+            let mut min = [OTHER_RESOLUTION_DEG; 2];
+            min[index] = RANGE_RESOLUTION_DEG;
             let [a, b] = [0, 1].map(|i| region.half[i] / min[i]);
             if a.max(b) < 1.0 {
                 return end(&region);
             }
             for half in region.halves(usize::from(b > a)) {
                 count += 1;
-                regions.insert((ordered(sign * end(&half)), count), half);
+                regions.insert((total_order_key(sign * end(&half)), count), half);
             }
         }
         // The guard refuses every pose. This is not reached if the neutral pose is safe.
@@ -162,8 +162,8 @@ impl<'a> Guard<'a> {
         region: &Region<N>,
     ) -> Option<(Cranks<'a, Slope<N>>, Cranks<'a, f64>)> {
         let angles = std::array::from_fn(|i| Slope::angle(i, region.bounds(i)));
-        let bounds = turned(self.robot, servos, angles);
-        let middle = turned(self.robot, servos, region.middle);
+        let bounds = cranks_at(self.robot, servos, angles);
+        let middle = cranks_at(self.robot, servos, region.middle);
         let broken = |(check, bounds, middle): (Check, Slope<N>, f64)| {
             let value = bounds.tighten(middle, &region.half).value;
             let [low, high] = [value.low, value.high].map(|value| self.broken_limit(check, value));
@@ -201,7 +201,7 @@ impl<'a> Guard<'a> {
             _ => 0.0,
         };
         self.limits
-            .broken(check, value + slack)
+            .violation_of(check, value + slack)
             .map(|violation| violation.limit)
     }
 
@@ -242,7 +242,7 @@ mod tests {
     /// Largest error of the firmware's integer arithmetic, as a sine (docs/firmware.md).
     const BAND: f64 = 0.002;
     /// Largest error of the firmware's integer arithmetic, mm (docs/firmware.md).
-    const STEPS: f64 = 4.0 / 256.0;
+    const LENGTH_ERROR_MM: f64 = 4.0 / 256.0;
 
     /// A robot of `robots/`. "At its type-2 limit": the paper's robot with all limits except the type-2 one lifted.
     fn robot(name: &str) -> Robot {
@@ -264,14 +264,14 @@ mod tests {
     }
 
     /// The robot's limits, relaxed by the largest error of the firmware's integers.
-    fn lax(robot: &Robot) -> Limits {
+    fn relaxed_limits(robot: &Robot) -> Limits {
         let limits = robot.limits();
         Limits {
             type2: limits.type2 - BAND,
             type1: limits.type1 - BAND,
             leg: limits.leg - BAND,
-            stroke_min: limits.stroke_min - STEPS,
-            stroke_max: limits.stroke_max + STEPS,
+            stroke_min: limits.stroke_min - LENGTH_ERROR_MM,
+            stroke_max: limits.stroke_max + LENGTH_ERROR_MM,
         }
     }
 
@@ -283,12 +283,12 @@ mod tests {
             let robot = robot(name);
             let (guard, limits) = (Guard::new(&robot), robot.limits());
             let sine = |limit: f64| [limit - BAND, limit - 0.1];
-            let stroke = |end: f64, sign: f64| [STEPS, 1.0].map(|by| end + sign * by);
+            let stroke = |end: f64, sign: f64| [LENGTH_ERROR_MM, 1.0].map(|by| end + sign * by);
             let sines = [
                 (&Check::TYPE2[..], sine(limits.type2)),
                 (&Check::TYPE1, sine(limits.type1)),
                 (&Check::LEG, sine(limits.leg)),
-                (&Check::UNCROSSED, [-STEPS, -1.0]),
+                (&Check::UNCROSSED, [-LENGTH_ERROR_MM, -1.0]),
                 (&Check::STROKE, stroke(limits.stroke_min, -1.0)),
                 (&Check::STROKE, stroke(limits.stroke_max, 1.0)),
             ];
@@ -308,18 +308,20 @@ mod tests {
         for name in ["paper", "unequal", "paper at its type-2 limit"] {
             let robot = robot(name);
             let guard = Guard::new(&robot);
-            let lax = lax(&robot);
+            let lax = relaxed_limits(&robot);
             let neutral = robot.servos().each_ref().map(|servo| servo.neutral);
             let broken = |angles: [f64; 4]| match robot.lizard().solve(&angles.into()) {
-                Ok(solution) => lax.violations(&solution).map(|of| Some(of.what)).next(),
+                Ok(solution) => lax.violations(&solution).map(|of| Some(of.check)).next(),
                 Err(_) => Some(None),
             };
             // Directions: each servo turns to one side, to the other, or not at all.
-            for ways in 0..81 {
-                let way = [1, 3, 9, 27].map(|part| f64::from(ways / part % 3) - 1.0);
+            for direction_index in 0..81 {
+                let direction =
+                    [1, 3, 9, 27].map(|part| f64::from(direction_index / part % 3) - 1.0);
                 for share in [[1.0; 4], [1.0, 0.4, 0.7, 0.2], [0.2, 0.7, 0.4, 1.0]] {
-                    let at =
-                        |by: f64| ALL.map(|servo| neutral[servo] + by * way[servo] * share[servo]);
+                    let at = |by: f64| {
+                        ALL.map(|servo| neutral[servo] + by * direction[servo] * share[servo])
+                    };
                     let (mut safe, mut not) = (0.0, 90.0);
                     if broken(at(not)).is_none() {
                         continue;

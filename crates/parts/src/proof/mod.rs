@@ -32,7 +32,7 @@ use crate::layers::body::Body;
 use crate::proof::clearance::Clearance;
 use guard::Guard;
 pub use search::FAR_MM;
-use search::Found;
+use search::SearchResult;
 use shape_pairs::Task;
 
 /// Least allowed distance of parts that are not designed to touch, mm: more than a printer's error.
@@ -65,10 +65,10 @@ pub struct NearestPair {
 pub struct Proof {
     /// The nearest two bodies of each pair of mounts, without bodies that are designed to touch;
     /// the nearest pair first.
-    pub apart: Vec<NearestPair>,
+    pub separate_pairs: Vec<NearestPair>,
     /// The nearest two bodies of each pair of mounts among bodies that are designed to touch,
     /// such as a pin and its hole. Their distance is the gap between them.
-    pub meeting: Vec<NearestPair>,
+    pub touching_pairs: Vec<NearestPair>,
     /// Bounds of each servo's angle over all accepted poses, deg.
     pub ranges: [[f64; 2]; 4],
     /// Number of pairs of shapes checked.
@@ -118,15 +118,15 @@ impl NearestPair {
     }
 
     /// The least distance in `seen`, mm; the proved bound if `seen` is `None`.
-    fn mm(&self) -> f64 {
+    fn least_distance(&self) -> f64 {
         self.seen.as_ref().map_or(self.proved, |seen| seen.mm)
     }
 }
 
 impl Proof {
     /// The nearest two bodies that are not designed to touch; `None` if no such pair was checked.
-    pub fn least(&self) -> Option<&NearestPair> {
-        self.apart.first()
+    pub fn nearest(&self) -> Option<&NearestPair> {
+        self.separate_pairs.first()
     }
 
     /// Decides whether the parts fit.
@@ -136,13 +136,13 @@ impl Proof {
     /// not be proved to keep that distance.
     pub fn judge(&self) -> Result<(), Clash> {
         let apart = self
-            .apart
+            .separate_pairs
             .iter()
-            .map(|near| (near.clash(MIN_GAP_MM), near.mm()));
+            .map(|near| (near.clash(MIN_GAP_MM), near.least_distance()));
         let meeting = self
-            .meeting
+            .touching_pairs
             .iter()
-            .map(|near| (near.clash(-TOUCH), near.mm()));
+            .map(|near| (near.clash(-TOUCH), near.least_distance()));
         let clashes = apart.chain(meeting).filter(|(clash, _)| clash.is_some());
         let (worst, _) = clashes.min_by(|a, b| a.1.total_cmp(&b.1)).unzip();
         worst.flatten().map_or(Ok(()), Err)
@@ -156,8 +156,8 @@ pub struct Questions<'a> {
     guard: Guard<'a>,
     tasks: Vec<Task>,
     /// True if the quick check found parts that come too near. Then `tasks` holds only the worst.
-    seen: bool,
-    joints: Vec<Solution>,
+    has_clash: bool,
+    joint_poses: Vec<Solution>,
 }
 
 /// The answer to one question.
@@ -175,11 +175,11 @@ impl<'a> Questions<'a> {
     pub fn new(assembly: &'a Assembly, which: impl Fn(&Body, &Body) -> bool) -> Self {
         let guard = Guard::new(assembly.robot());
         let tasks = Task::all(assembly, &guard, FAR_MM, which);
-        let worst = first::worst(assembly, &tasks);
+        let worst = first::worst_tasks(assembly, &tasks);
         Self {
-            seen: worst.is_some(),
+            has_clash: worst.is_some(),
             tasks: worst.unwrap_or(tasks),
-            joints: assembly.poses(JOINT_STEPS).collect(),
+            joint_poses: assembly.poses(JOINT_STEPS).collect(),
             guard,
             assembly,
         }
@@ -191,19 +191,21 @@ impl<'a> Questions<'a> {
     }
 
     /// Answers one question, by its index below [`Questions::count`].
-    pub fn one(&self, index: usize) -> Answer {
-        self.within(index, search::MAX_REGIONS)
+    pub fn answer_one(&self, index: usize) -> Answer {
+        self.answer_within(index, search::MAX_REGIONS)
     }
 
     /// Answers one question; checks at most `max` regions.
-    fn within(&self, index: usize, max: u64) -> Answer {
+    fn answer_within(&self, index: usize, max: u64) -> Answer {
         let mut task = self.tasks[index].clone();
         let pinned = match task.may_touch {
-            true => self.assembly.take_joint(&mut task, &self.joints),
+            true => self
+                .assembly
+                .remove_pinned_pairs(&mut task, &self.joint_poses),
             false => None,
         };
         let nearest = (!task.shape_pairs.is_empty()).then(|| {
-            let nearest = search::least(self.assembly, &self.guard, &task, max);
+            let nearest = search::find_least_distance(self.assembly, &self.guard, &task, max);
             let regions = nearest.regions;
             (self.assembly.nearest_pair(nearest), regions)
         });
@@ -222,8 +224,8 @@ impl<'a> Questions<'a> {
     ) -> Proof {
         let mut max = search::MAX_REGIONS;
         let mut proof = Proof {
-            apart: Vec::new(),
-            meeting: Vec::new(),
+            separate_pairs: Vec::new(),
+            touching_pairs: Vec::new(),
             ranges: self.guard.ranges.map(|range| [range.low, range.high]),
             pairs: self.tasks.iter().map(|task| task.shape_pairs.len()).sum(),
             regions: 0,
@@ -232,29 +234,29 @@ impl<'a> Questions<'a> {
         for (index, task) in self.tasks.iter().enumerate() {
             progress(index, count);
             let answer = match max {
-                search::MAX_REGIONS => known(index).unwrap_or_else(|| self.one(index)),
-                fewer => self.within(index, fewer),
+                search::MAX_REGIONS => known(index).unwrap_or_else(|| self.answer_one(index)),
+                fewer => self.answer_within(index, fewer),
             };
-            proof.meeting.extend(answer.pinned);
+            proof.touching_pairs.extend(answer.pinned);
             let Some((near, regions)) = answer.nearest else {
                 continue;
             };
             proof.regions += regions;
             let clash = near.clash(task.min_distance());
             if task.may_touch {
-                proof.meeting.push(near);
+                proof.touching_pairs.push(near);
             } else {
-                proof.apart.push(near);
+                proof.separate_pairs.push(near);
             }
             // One clash is enough to refuse. Questions about parts that barely fit take long.
             match clash {
                 Some(Clash::Unsure(_)) => max = search::MAX_REGIONS / 10,
-                Some(_) if !self.seen => break,
+                Some(_) if !self.has_clash => break,
                 _ => {}
             }
         }
         progress(count, count);
-        for list in [&mut proof.apart, &mut proof.meeting] {
+        for list in [&mut proof.separate_pairs, &mut proof.touching_pairs] {
             list.sort_by(|a, b| a.proved.total_cmp(&b.proved));
         }
         proof
@@ -283,20 +285,20 @@ impl Assembly {
     /// Removes the pinned pairs from a task and returns the pair with the smallest gap; `None` if
     /// no pair is pinned, or if there are no poses. A pin and its round hole have the same centre
     /// at every pose, so their gap never changes.
-    fn take_joint(&self, task: &mut Task, poses: &[Solution]) -> Option<NearestPair> {
+    fn remove_pinned_pairs(&self, task: &mut Task, poses: &[Solution]) -> Option<NearestPair> {
         let place = |pose| {
             let [a, b] = task.mounts.map(|mount| self.place(mount, pose));
-            b.seen_from(&a)
+            b.relative_to(&a)
         };
         let places: Vec<_> = poses.iter().map(place).collect();
         let pose = poses.first()?;
         let mut min: Option<NearestPair> = None;
         task.shape_pairs.retain(|pair| {
-            let gap = pair.pinned(&places);
+            let gap = pair.pinned_gap(&places);
             if let Some(mm) = gap
                 && min.as_ref().is_none_or(|min| mm < min.proved)
             {
-                min = Some(self.nearest_pair(Found {
+                min = Some(self.nearest_pair(SearchResult {
                     proved: mm,
                     bodies: pair.bodies,
                     seen: Some((*pose, mm)),
@@ -310,7 +312,7 @@ impl Assembly {
     }
 
     /// Converts a search result to body names and angles. Angles on which it does not depend are neutral.
-    fn nearest_pair(&self, found: Found) -> NearestPair {
+    fn nearest_pair(&self, found: SearchResult) -> NearestPair {
         let [first, second] = found.bodies.map(|body| self.bodies()[body].name.clone());
         let neutral = self.robot().servos().each_ref().map(|servo| servo.neutral);
         let angles = |optional_angles: [Option<f64>; 4]| {

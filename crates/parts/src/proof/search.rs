@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use lizard_kinematics::{Solution, Vector};
 
-use super::guard::{Guard, Region, ordered};
+use super::guard::{Guard, Region, total_order_key};
 use super::shape_pairs::Task;
 use super::slope::Slope;
 use crate::bodies::assembly::Assembly;
@@ -22,7 +22,7 @@ const ROUNDING: f64 = 1e-6;
 /// Absolute part of the difference between lower and upper bound at which the search ends, mm.
 const TOLERANCE: f64 = 0.01;
 /// Relative part of the difference at which the search ends, as a share of the distance.
-const SHARE: f64 = 0.05;
+const RELATIVE_TOLERANCE: f64 = 0.05;
 /// Relative part of the difference for parts designed to touch, for which only the sign of the gap matters.
 const TOUCHING_SHARE_TOLERANCE: f64 = 0.5;
 /// Half width below which regions are not halved, deg.
@@ -34,7 +34,7 @@ const MAX_REGIONS_OVERLAPPING: u64 = 1_000;
 
 /// The result of a search for the least distance.
 #[derive(Clone, Debug)]
-pub struct Found {
+pub struct SearchResult {
     /// Lower bound of the distance, mm; never more than [`FAR_MM`].
     pub proved: f64,
     /// The two nearest bodies, by their index in [`Assembly::bodies`].
@@ -55,15 +55,20 @@ struct Part<const N: usize> {
     /// Lower bound of all distances in the region, mm.
     lower_bound: f64,
     /// The index of the pair of shapes with the bound `lower_bound`.
-    by: u32,
+    bounding_pair: u32,
     /// The servo across whose angle the region is to be halved.
-    across: usize,
+    split_servo: usize,
     candidates: Vec<u32>,
 }
 
 /// The least distance of a task's pairs of shapes over all poses that the guard accepts, from at most `max`
 /// regions.
-pub fn least(assembly: &Assembly, guard: &Guard, task: &Task, max: u64) -> Found {
+pub fn find_least_distance(
+    assembly: &Assembly,
+    guard: &Guard,
+    task: &Task,
+    max: u64,
+) -> SearchResult {
     match task.servos()[..] {
         [] => search(assembly, guard, task, [], max),
         [a] => search(assembly, guard, task, [a], max),
@@ -79,7 +84,7 @@ fn search<const N: usize>(
     task: &Task,
     servos: [usize; N],
     max: u64,
-) -> Found {
+) -> SearchResult {
     let search = Search {
         assembly,
         guard,
@@ -110,17 +115,22 @@ impl<const N: usize> Search<'_, N> {
         self.seen.as_ref().map_or(FAR_MM, |seen| seen.1.min(FAR_MM))
     }
 
-    fn run(mut self, max: u64) -> Found {
+    fn run(mut self, max: u64) -> SearchResult {
         let all_poses = Region::of(self.servos.map(|servo| self.guard.ranges[servo]));
         let all: Vec<u32> = (0..self.task.shape_pairs.len() as u32).collect();
         let share = if self.task.may_touch {
             TOUCHING_SHARE_TOLERANCE
         } else {
-            SHARE
+            RELATIVE_TOLERANCE
         };
         // The part with the least bound comes first. Parts of equal bounds are ordered by their regions, so the order
         // is always the same.
-        let key = |part: &Part<N>| (ordered(part.lower_bound), part.region.middle.map(ordered));
+        let key = |part: &Part<N>| {
+            (
+                total_order_key(part.lower_bound),
+                part.region.middle.map(total_order_key),
+            )
+        };
         let first = self.bound_region(all_poses, &all).into_iter();
         let mut parts: BTreeMap<_, _> = first.map(|part| (key(&part), part)).collect();
         while let Some((_, part)) = parts.pop_first() {
@@ -136,7 +146,7 @@ impl<const N: usize> Search<'_, N> {
             if part.region.half.iter().all(|half| *half < MIN_HALF_WIDTH) || self.regions >= max {
                 return self.found(part.lower_bound, Some(&part));
             }
-            for half in part.region.halves(part.across) {
+            for half in part.region.halves(part.split_servo) {
                 let half = self.bound_region(half, &part.candidates);
                 parts.extend(half.map(|part| (key(&part), part)));
             }
@@ -145,10 +155,10 @@ impl<const N: usize> Search<'_, N> {
         self.found(high, None)
     }
 
-    fn found(self, proved: f64, doubt: Option<&Part<N>>) -> Found {
+    fn found(self, proved: f64, doubt: Option<&Part<N>>) -> SearchResult {
         let unseen = doubt.filter(|_| self.seen.is_none());
-        let by = unseen.map_or(self.by, |part| part.by);
-        Found {
+        let by = unseen.map_or(self.by, |part| part.bounding_pair);
+        SearchResult {
             proved: proved - ROUNDING,
             bodies: self.task.shape_pairs[by as usize].bodies,
             doubt: doubt.map(|part| self.angles(&part.region)),
@@ -177,9 +187,9 @@ impl<const N: usize> Search<'_, N> {
             let bounds = self.assembly.place_on(mount, &bounds);
             (place, tighten(&bounds, &place, &region))
         });
-        let place = b.seen_from(&a);
-        let bounds = tighten(&around_b.seen_from(&around_a), &place, &region);
-        let strays = [bounds.at, bounds.turn].map(|vector| {
+        let place = b.relative_to(&a);
+        let bounds = tighten(&around_b.relative_to(&around_a), &place, &region);
+        let strays = [bounds.origin, bounds.x_axis].map(|vector| {
             let [x, y] =
                 [vector.x, vector.y].map(|coordinate| coordinate.largest_change(&region.half));
             x.hypot(y)
@@ -187,11 +197,11 @@ impl<const N: usize> Search<'_, N> {
         let mut part = Part {
             region,
             lower_bound: f64::INFINITY,
-            by: 0,
-            across: across(&bounds, &region),
+            bounding_pair: 0,
+            split_servo: most_influential_servo(&bounds, &region),
             candidates: Vec::new(),
         };
-        let closed = place.at.is_finite() && place.turn.is_finite();
+        let closed = place.origin.is_finite() && place.x_axis.is_finite();
         let mut nearest = (f64::INFINITY, 0);
         for &index in alive {
             let shape_pair = &self.task.shape_pairs[index as usize];
@@ -210,7 +220,7 @@ impl<const N: usize> Search<'_, N> {
             if low < self.upper_bound() {
                 part.candidates.push(index);
                 if low < part.lower_bound {
-                    (part.lower_bound, part.by) = (low, index);
+                    (part.lower_bound, part.bounding_pair) = (low, index);
                 }
             }
         }
@@ -236,22 +246,25 @@ fn tighten<const N: usize>(
         Vector::new(x, bounds.y.tighten(middle.y, &region.half))
     };
     Placement {
-        at: tighten(bounds.at, middle.at),
-        turn: tighten(bounds.turn, middle.turn),
+        origin: tighten(bounds.origin, middle.origin),
+        x_axis: tighten(bounds.x_axis, middle.x_axis),
     }
 }
 
 /// The index of the servo whose range in a region changes a placement most.
-fn across<const N: usize>(bounds: &Placement<Slope<N>>, region: &Region<N>) -> usize {
+fn most_influential_servo<const N: usize>(
+    bounds: &Placement<Slope<N>>,
+    region: &Region<N>,
+) -> usize {
     /// The lever arm by which a rotation is converted into a distance, mm.
     const LEVER_MM: f64 = 30.0;
-    let (at, turn) = (bounds.at, bounds.turn * LEVER_MM);
+    let (at, turn) = (bounds.origin, bounds.x_axis * LEVER_MM);
     let numbers = [at.x, at.y, turn.x, turn.y];
     let weight = |servo: usize| {
         let half = region.half[servo];
         numbers.iter().fold(0.0, |sum, number| {
             // Without a finite bound, the widest angle is halved.
-            let strays = number.slope[servo].max_abs() * half;
+            let strays = number.derivatives[servo].max_abs() * half;
             sum + if strays.is_finite() {
                 strays
             } else {

@@ -32,9 +32,9 @@ pub struct ShapePair {
     /// Largest distance of the second shape's points from the origin of its frame, mm.
     lever: f64,
     /// Holes of the second shape's layer that may hold the first shape.
-    around_first: Vec<Shape>,
+    holes_for_first: Vec<Shape>,
     /// Holes of the first shape's layer that may hold the second shape.
-    around_second: Vec<Shape>,
+    holes_for_second: Vec<Shape>,
 }
 
 /// The pairs of shapes on two mounts.
@@ -73,7 +73,7 @@ impl Task {
         which: impl Fn(&Body, &Body) -> bool,
     ) -> Vec<Self> {
         let mut tasks: Vec<Self> = Vec::new();
-        let rectangles = sweep::all(assembly, guard);
+        let rectangles = sweep::body_rectangles(assembly, guard);
         let bodies = assembly.bodies();
         for (i, a) in bodies.iter().enumerate() {
             for (j, b) in bodies.iter().enumerate().skip(i + 1) {
@@ -117,8 +117,8 @@ fn shape_pairs(i: usize, a: &Body, j: usize, b: &Body, within: f64) -> Vec<Shape
             } else {
                 gap.max(SAME_HEIGHT_MM)
             };
-            for first in &p.add {
-                for second in &q.add {
+            for first in &p.filled_shapes {
+                for second in &q.filled_shapes {
                     shape_pairs.push(ShapePair {
                         bodies: [i, j],
                         gap,
@@ -129,8 +129,8 @@ fn shape_pairs(i: usize, a: &Body, j: usize, b: &Body, within: f64) -> Vec<Shape
                             (middle, shape.farthest(middle))
                         }),
                         lever: second.farthest(Vector::default()) - second.radius,
-                        around_first: holes(q, first),
-                        around_second: holes(p, second),
+                        holes_for_first: holes(q, first),
+                        holes_for_second: holes(p, second),
                     });
                 }
             }
@@ -142,7 +142,7 @@ fn shape_pairs(i: usize, a: &Body, j: usize, b: &Body, within: f64) -> Vec<Shape
 /// The holes of a layer that are at least as wide as a shape.
 fn holes(prism: &Prism, shape: &Shape) -> Vec<Shape> {
     let large = |hole: &&Shape| hole.width() >= shape.width();
-    prism.cut.iter().filter(large).cloned().collect()
+    prism.cut_shapes.iter().filter(large).cloned().collect()
 }
 
 impl ShapePair {
@@ -158,7 +158,7 @@ impl ShapePair {
 
     /// The gap of a pinned pair, mm, which is constant: a pin in the centre of a round hole, or a disc whose centre
     /// is fixed in the other shape's frame, in all of `places`. `None` if the pair is not pinned.
-    pub fn pinned(&self, places: &[Placement]) -> Option<f64> {
+    pub fn pinned_gap(&self, places: &[Placement]) -> Option<f64> {
         /// A bound of the rounding error of a joint's position, mm.
         const ROUNDING_MM: f64 = 1e-6;
         let centre = |shape: &Shape| match shape.points[..] {
@@ -183,7 +183,10 @@ impl ShapePair {
             within.fold(disc.distance(other), f64::max)
         };
         let (first, second) = (&self.first, &self.second);
-        let (place, around) = (places.first()?, [&self.around_first, &self.around_second]);
+        let (place, around) = (
+            places.first()?,
+            [&self.holes_for_first, &self.holes_for_second],
+        );
         air(first, around[0], &stays)
             .or_else(|| air(second, around[1], &|second, first| stays(first, second)))
             .or_else(|| {
@@ -246,14 +249,14 @@ impl ShapePair {
         if self.gap > 0.0 {
             return self.with_gap(flat);
         }
-        for hole in &self.around_first {
+        for hole in &self.holes_for_first {
             // A hole that moves has the same effect as a pin that moves.
             flat = flat.max(
                 self.first
                     .depth_in(&hole.placed(place), largest_change(hole)),
             );
         }
-        for hole in &self.around_second {
+        for hole in &self.holes_for_second {
             flat = flat.max(second.depth_in(hole, moves));
         }
         flat

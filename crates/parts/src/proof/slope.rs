@@ -16,21 +16,21 @@ pub struct Slope<const N: usize> {
     /// Bounds of the number.
     pub value: Interval,
     /// Bounds of the number's derivatives with respect to the servos' angles, per degree.
-    pub slope: [Interval; N],
+    pub derivatives: [Interval; N],
 }
 
 impl<const N: usize> Slope<N> {
     /// The angle of one of the servos, deg.
     pub fn angle(servo: usize, bounds: Interval) -> Self {
         let mut angle = Self::of(0.0);
-        (angle.value, angle.slope[servo]) = (bounds, Interval::of(1.0));
+        (angle.value, angle.derivatives[servo]) = (bounds, Interval::of(1.0));
         angle
     }
 
     /// Largest change of the number from its value at the middle angles, if each servo is at most `half` degrees away
     /// from its middle angle.
     pub fn largest_change(&self, half: &[f64; N]) -> f64 {
-        let slopes = self.slope.iter().zip(half);
+        let slopes = self.derivatives.iter().zip(half);
         slopes.fold(0.0, |sum, (slope, half)| sum + slope.max_abs() * half)
     }
 
@@ -52,10 +52,10 @@ impl<const N: usize> Slope<N> {
     }
 
     /// A function of one number: its value, and its derivatives by the chain rule.
-    fn each(self, value: Interval, derivative: impl Fn(Interval) -> Interval) -> Self {
+    fn map_chain_rule(self, value: Interval, derivative: impl Fn(Interval) -> Interval) -> Self {
         Self {
             value,
-            slope: self.slope.map(derivative),
+            derivatives: self.derivatives.map(derivative),
         }
     }
 
@@ -66,8 +66,11 @@ impl<const N: usize> Slope<N> {
         value: Interval,
         derivative: impl Fn(Interval, Interval) -> Interval,
     ) -> Self {
-        let slope = std::array::from_fn(|i| derivative(self.slope[i], other.slope[i]));
-        Self { value, slope }
+        let slope = std::array::from_fn(|i| derivative(self.derivatives[i], other.derivatives[i]));
+        Self {
+            value,
+            derivatives: slope,
+        }
     }
 }
 
@@ -90,7 +93,7 @@ operators! {
         let (value, of) = (self.value * other.value, self.value);
         self.zip(other, value, |a, b| a * other.value + b * of)
     }
-    Mul mul(self, factor: f64) { self.each(self.value * factor, |slope| slope * factor) }
+    Mul mul(self, factor: f64) { self.map_chain_rule(self.value * factor, |slope| slope * factor) }
     Div div(self, other: Self) {
         let quotient = self.value / other.value;
         self.zip(other, quotient, |a, b| (a - quotient * b) / other.value)
@@ -100,7 +103,7 @@ operators! {
 impl<const N: usize> Neg for Slope<N> {
     type Output = Self;
     fn neg(self) -> Self {
-        self.each(-self.value, |slope| -slope)
+        self.map_chain_rule(-self.value, |slope| -slope)
     }
 }
 
@@ -108,13 +111,13 @@ impl<const N: usize> Real for Slope<N> {
     fn of(value: f64) -> Self {
         Self {
             value: Interval::of(value),
-            slope: [Interval::of(0.0); N],
+            derivatives: [Interval::of(0.0); N],
         }
     }
 
     fn root(self) -> Self {
         let root = self.value.root();
-        self.each(root, |slope| slope / (root * 2.0))
+        self.map_chain_rule(root, |slope| slope / (root * 2.0))
     }
 
     fn sin_cos_each<const K: usize>(degrees: [Self; K]) -> ([Self; K], [Self; K]) {
@@ -124,8 +127,8 @@ impl<const N: usize> Real for Slope<N> {
         let (mut sin, mut cos) = (degrees, degrees);
         for i in 0..K {
             let turn = |slope: Interval| slope * degree;
-            sin[i] = degrees[i].each(sines[i], |slope| turn(slope) * cosines[i]);
-            cos[i] = degrees[i].each(cosines[i], |slope| -turn(slope) * sines[i]);
+            sin[i] = degrees[i].map_chain_rule(sines[i], |slope| turn(slope) * cosines[i]);
+            cos[i] = degrees[i].map_chain_rule(cosines[i], |slope| -turn(slope) * sines[i]);
         }
         (sin, cos)
     }
@@ -143,7 +146,7 @@ mod tests {
     fn numbers<T: Real>([left, right]: [T; 2]) -> [T; 3] {
         let (sin, cos) = T::sin_cos_each([left, right]);
         let [left, right] = [0, 1].map(|i| Vector::new(cos[i], sin[i]));
-        let pose = HEAD.shape(AssemblyMode::Ahead, left, right);
+        let pose = HEAD.pose_unchecked(AssemblyMode::Ahead, left, right);
         [pose.end_point.x, pose.end_point.y, pose.type2]
     }
 
@@ -167,7 +170,7 @@ mod tests {
                             let mut next = at;
                             next[servo] += step;
                             let rate = (numbers(next)[i] - value) / step;
-                            let Interval { low, high } = held[i].slope[servo];
+                            let Interval { low, high } = held[i].derivatives[servo];
                             assert!(low - 1e-4 <= rate && rate <= high + 1e-4);
                             // The bounds of the derivatives are not much wider than needed.
                             assert!(half > 0.1 || high - low < 0.1, "{low} {high}");

@@ -11,13 +11,13 @@ use crate::bodies::assembly::Assembly;
 use crate::layers::body::{Body, Mount};
 
 /// Half width below which regions are not halved, deg.
-const FINE: f64 = 2.0;
+const MIN_HALF_WIDTH_DEG: f64 = 2.0;
 
 /// Bounds of x and y, mm, chassis frame.
 pub type Rectangle = [Interval; 2];
 
 /// Returns the rectangle of each body, in the order of [`Assembly::bodies`].
-pub fn all(assembly: &Assembly, guard: &Guard) -> Vec<Rectangle> {
+pub fn body_rectangles(assembly: &Assembly, guard: &Guard) -> Vec<Rectangle> {
     const EMPTY: Interval = Interval::new(f64::INFINITY, f64::NEG_INFINITY);
     let mut rectangles = vec![[EMPTY; 2]; assembly.bodies().len()];
     let mut mounts: Vec<Mount> = Vec::new();
@@ -66,7 +66,7 @@ impl Sweep<'_> {
             };
             let widest = (0..N).max_by(|a, b| region.half[*a].total_cmp(&region.half[*b]));
             match widest {
-                Some(widest) if region.half[widest] > FINE => {
+                Some(widest) if region.half[widest] > MIN_HALF_WIDTH_DEG => {
                     regions.extend(region.halves(widest));
                 }
                 _ => {
@@ -100,6 +100,6 @@ impl Sweep<'_> {
 
 /// The points of a body's shapes, each with its shape's radius.
 fn points(body: &Body) -> impl Iterator<Item = (Vector, f64)> {
-    let shapes = body.prisms.iter().flat_map(|prism| &prism.add);
+    let shapes = body.prisms.iter().flat_map(|prism| &prism.filled_shapes);
     shapes.flat_map(|shape| shape.points.iter().map(|&point| (point, shape.radius)))
 }

@@ -155,7 +155,7 @@ fn a_leg_is_held_against_friction_and_a_caught_foot_spares_no_servo() {
         let [from, to] = robot.legs()[1].at(angle, angle - lag).strut;
         (to - from).length() - strut
     };
-    let (way, torque) = robot.drive().strut().expect("a strut").end(1, 20.0);
+    let (way, torque) = robot.drive().strut().expect("a strut").slot_end(1, 20.0);
     assert!((stretched(way) - 5.0).abs() < 1e-6, "{way}");
     let by = (stretched(way + 0.01) - stretched(way - 0.01)) / 0.02f64.to_radians();
     let force = hold.force + 5.0 * hold.rate;
@@ -204,7 +204,7 @@ fn rigid_struts_are_printed_instead_and_need_no_springs() {
     assert_eq!(names(&rigid.instead).first(), Some(&slotted));
     assert!(names(&sprung.printed).contains(&slotted) && names(&rigid.printed).contains(&bar));
     assert_eq!(rigid.hold, None);
-    assert!(!assembly.robot().drive().lags());
+    assert!(!assembly.robot().drive().can_lag());
     let said = rigid.to_string();
     for words in [
         "A foot that is caught can stall its servo",

@@ -89,7 +89,7 @@ fn a_hung_coil_is_as_long_as_its_hooks_leave_and_lies_in_its_strut() {
         for (i, leg) in ["LF", "RF", "RH", "LH"].into_iter().enumerate() {
             let [spring, strut] =
                 ["spring", "strut"].map(|of| body(&assembly, &format!("{of} {leg}")));
-            let shape = &spring.prisms[0].add[0];
+            let shape = &spring.prisms[0].filled_shapes[0];
             let x = shape.points.iter().map(|point| point.x);
             let length = x.clone().fold(f64::MIN, f64::max) - x.fold(f64::MAX, f64::min);
             // Each hook, with the coil's inner diameter, goes around the far side of an M3 screw.
@@ -167,9 +167,9 @@ fn the_screws_of_a_horn_do_not_reach_the_servos_boss() {
 }
 
 /// Points along a loop, every 0.2 mm.
-fn along(line: &Loop) -> Vec<Vector> {
+fn points_along(line: &Loop) -> Vec<Vector> {
     let mut points = Vec::new();
-    for (side, to) in line.ends() {
+    for (side, to) in line.sides_with_end_points() {
         let chord = to - side.from;
         match side.arc(to) {
             None => {
@@ -183,7 +183,7 @@ fn along(line: &Loop) -> Vec<Vector> {
                 let arm = side.from - centre;
                 points.extend((0..count).map(|i| {
                     let (sin, cos) = (whole * f64::from(i) / f64::from(count)).sin_cos();
-                    centre + arm * cos + arm.left() * sin
+                    centre + arm * cos + arm.rotated_left() * sin
                 }));
             }
         }
@@ -196,7 +196,7 @@ fn thinnest(part: &Part) -> f64 {
     let mut smallest = f64::INFINITY;
     for prism in &part.prisms {
         for piece in &Outline::of(prism).pieces {
-            let lines: Vec<_> = piece.iter().map(along).collect();
+            let lines: Vec<_> = piece.iter().map(points_along).collect();
             for (i, a) in lines.iter().enumerate() {
                 for (b, point) in lines[i + 1..]
                     .iter()
@@ -238,14 +238,14 @@ fn a_hexagon_pocket_of_a_link_has_a_wall_around_it() {
     let assembly = assembly("paper", "");
     let link = body(&assembly, "link A1");
     let floor = Outline::of(&link.prisms[0]);
-    let outer = along(&floor.pieces[0][0]);
+    let outer = points_along(&floor.pieces[0][0]);
     let mut pockets = 0;
     for hole in &floor.pieces[0][1..] {
         if hole.sides.len() != 6 {
             continue;
         }
         pockets += 1;
-        for corner in along(hole) {
+        for corner in points_along(hole) {
             let wall = outer.iter().map(|point| (*point - corner).length());
             let wall = wall.fold(f64::INFINITY, f64::min);
             assert!(wall > 1.58, "{wall}");
@@ -277,7 +277,7 @@ fn parts_that_are_alike_but_for_left_and_right_are_marked() {
             }
             marks.push((describe(part), part.mark.clone()));
             // The mark was engraved, so some of the part's material is gone.
-            let (printed, roofs) = part.printed();
+            let (printed, roofs) = part.printed_layers();
             let solid = Solid::of(&printed);
             let skins = 0.3 * 9.0 * roofs as f64;
             let rest = part.volume() + skins - 0.5;
@@ -303,7 +303,7 @@ fn no_hole_of_a_printed_part_begins_in_the_air() {
     for name in ["paper", "large", "unequal"] {
         let mut roofs = 0;
         for part in assembly(name, "").parts() {
-            let (printed, count) = part.printed();
+            let (printed, count) = part.printed_layers();
             roofs += count * part.count();
             for pair in layers(&printed).windows(2) {
                 let [([_, end], below), (z, outline)] = pair else {

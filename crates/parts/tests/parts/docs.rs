@@ -55,7 +55,7 @@ fn the_page_has_every_key() {
 
 /// Compares the text of a page between a start mark and the end mark with `expected`. If BLESS_DOCS is set, writes
 /// `expected` into the page instead.
-fn quoted(path: &str, start: &str, expected: &str) {
+fn check_or_write_quote(path: &str, start: &str, expected: &str) {
     const END: &str = "<!-- end of the list -->";
     let page = read(path);
     let (before, rest) = page.split_once(start).expect(start);
@@ -87,7 +87,7 @@ fn the_pages_quote_the_lists_of_the_bill() {
         ),
     ] {
         let start = format!("<!-- {mark}; a test holds it -->\n");
-        quoted(path, &start, list);
+        check_or_write_quote(path, &start, list);
         // The guide contains the list, too.
         assert!(bill.to_string().contains(list), "{mark}");
     }

@@ -81,7 +81,8 @@ fn a_rigid_strut_is_as_long_as_the_other_from_hole_to_hole_and_within_it() {
             let (inner, outer) = (rigid.z(), slotted.z());
             assert!(outer[0] <= inner[0] && inner[1] <= outer[1], "{name}");
             for prism in &slotted.prisms {
-                let air = rigid.prisms[0].add[0].depth_in(&prism.add[0], Default::default());
+                let air = rigid.prisms[0].filled_shapes[0]
+                    .depth_in(&prism.filled_shapes[0], Default::default());
                 assert!(air > -1e-9, "{name}: {air}");
             }
         }
@@ -93,7 +94,7 @@ fn shafts_and_pivots_of_the_plate_are_where_the_kinematics_has_them() {
     let assembly = assembly("unequal");
     let holes = holes(body(&assembly, "plate"));
     for leg in &assembly.layout().legs {
-        for pivot in [leg.driven, leg.idle] {
+        for pivot in [leg.crank_pivot, leg.follower_pivot] {
             let at = |hole: &(f64, f64)| (hole.0 - pivot.x).hypot(hole.1 - pivot.y) < 1e-9;
             assert!(holes.iter().any(at), "{pivot:?}");
         }

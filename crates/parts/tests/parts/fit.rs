@@ -53,7 +53,7 @@ fn a_body_is_found_by_its_name_and_has_layers_from_below_to_above() {
         for prism in &body.prisms {
             assert!(prism.z[0] < prism.z[1], "{}", body.name);
         }
-        for other in &body.meets {
+        for other in &body.allowed_contacts {
             let known = assembly.body(other).is_some();
             assert!(known, "{} meets {other}", body.name);
         }
@@ -68,14 +68,14 @@ fn pins_meet_the_holes_of_the_parts_that_they_hold() {
         for pose in assembly.poses(5) {
             let bodies = assembly.bodies().iter();
             for screw in bodies.filter(|body| body.name.starts_with("screw ")) {
-                let shapes = screw.prisms.iter().map(|prism| &prism.add[0]);
+                let shapes = screw.prisms.iter().map(|prism| &prism.filled_shapes[0]);
                 let shank = shapes.min_by(|a, b| a.width().total_cmp(&b.width()));
                 let shank = shank.expect("a shank");
                 let at = assembly.place(screw.mount, &pose).map(shank.points[0]);
-                for held in &screw.meets {
+                for held in &screw.allowed_contacts {
                     let held = body(&assembly, held);
                     let frame = assembly.place(held.mount, &pose);
-                    let cuts = held.prisms.iter().flat_map(|prism| &prism.cut);
+                    let cuts = held.prisms.iter().flat_map(|prism| &prism.cut_shapes);
                     let holes = cuts.filter(|cut| cut.radius >= shank.radius - 0.3);
                     let error = holes.map(|hole| (frame.map(hole.points[0]) - at).length());
                     let near = error.fold(f64::INFINITY, f64::min);

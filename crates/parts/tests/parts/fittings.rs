@@ -33,7 +33,10 @@ fn both_products_named_for_a_fitting_go_into_the_room_of_its_body() {
                 continue;
             }
             for body in found {
-                let points = body.prisms.iter().flat_map(|prism| &prism.add[0].points);
+                let points = body
+                    .prisms
+                    .iter()
+                    .flat_map(|prism| &prism.filled_shapes[0].points);
                 let range = |of: fn(&lizard_kinematics::Vector) -> f64| {
                     let all = points.clone().map(of);
                     all.clone().fold(f64::MIN, f64::max) - all.fold(f64::MAX, f64::min)
@@ -90,8 +93,14 @@ fn a_radio_module_of_either_common_size_has_a_place() {
     let [place] = bodies(&assembly, Fitting::Radio)[..] else {
         panic!("one place")
     };
-    let xs = place.prisms[0].add[0].points.iter().map(|point| point.x);
-    let ys = place.prisms[0].add[0].points.iter().map(|point| point.y);
+    let xs = place.prisms[0].filled_shapes[0]
+        .points
+        .iter()
+        .map(|point| point.x);
+    let ys = place.prisms[0].filled_shapes[0]
+        .points
+        .iter()
+        .map(|point| point.y);
     let extent = |of: Vec<f64>| {
         of.iter().copied().fold(f64::MIN, f64::max) - of.iter().copied().fold(f64::MAX, f64::min)
     };
@@ -112,7 +121,7 @@ fn a_tie_slot_has_a_wall_on_each_side_and_nothing_stands_in_the_ties_way() {
         let thin = range(|at| at.x).min(range(|at| at.y)) + 2.0 * cut.radius;
         cut.points.len() > 1 && (1.9..2.1).contains(&thin)
     };
-    let slots = deck.prisms[0].cut.iter().filter(narrow);
+    let slots = deck.prisms[0].cut_shapes.iter().filter(narrow);
     let mut count = 0;
     for slot in slots {
         for body in assembly.bodies() {
@@ -120,7 +129,7 @@ fn a_tie_slot_has_a_wall_on_each_side_and_nothing_stands_in_the_ties_way() {
                 continue;
             }
             for prism in &body.prisms {
-                let apart = prism.add[0].distance(slot);
+                let apart = prism.filled_shapes[0].distance(slot);
                 assert!(apart > 0.05, "{}: {apart}", body.name);
             }
         }

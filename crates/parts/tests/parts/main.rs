@@ -29,7 +29,7 @@ const GRAIN: &str = "grain";
 const STRUT: &str = "[leg.drive]\nkind = \"strut\"";
 
 /// The robot of a file of robots/, with more lines of TOML appended.
-fn with(name: &str, more: &str) -> Robot {
+fn robot_with(name: &str, more: &str) -> Robot {
     let path = format!("{}/../../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(&path).expect(&path);
     Robot::parse(&format!("{text}\n{more}"))
@@ -38,7 +38,7 @@ fn with(name: &str, more: &str) -> Robot {
 
 /// The assembly of a file of robots/, with more lines appended.
 fn assembly(name: &str, more: &str) -> Assembly {
-    Assembly::new(&with(name, more))
+    Assembly::new(&robot_with(name, more))
 }
 
 /// The assembly of a file of robots/ with slotted struts, the wider kind.

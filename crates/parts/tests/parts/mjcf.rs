@@ -9,11 +9,11 @@ use lizard_robot::servo::{LEGS, NAMES};
 use roxmltree::{Document, Node};
 
 use crate::mjcf_masses::weighed;
-use crate::mjcf_reader::{bodies, child, elements, neutral, numbers, written};
-use crate::{GRAIN, ROBOTS, with};
+use crate::mjcf_reader::{bodies, child, elements, mjcf_with, neutral, numbers};
+use crate::{GRAIN, ROBOTS, robot_with};
 
 fn robot(name: &str) -> Robot {
-    with(name, "")
+    robot_with(name, "")
 }
 
 #[test]
@@ -39,7 +39,7 @@ fn its_loops_are_closed_where_the_robots_joints_are() {
         }
         let (force, rate) = (4.0, 0.4);
         for pull in [None, Some(Pull { force, rate })] {
-            let text = written(&robot, |scene| scene.pull = pull);
+            let text = mjcf_with(&robot, |scene| scene.pull = pull);
             let document = Document::parse(&text).expect("well formed");
             let all = bodies(&document);
             let closed = elements(&document, "equality");
@@ -61,7 +61,7 @@ fn its_loops_are_closed_where_the_robots_joints_are() {
 fn each_foot_stands_where_the_contact_model_has_it_and_a_long_one_is_lower() {
     for name in ROBOTS {
         let robot = robot(name);
-        let text = written(&robot, |scene| scene.long = [0.0, 0.6, 0.0, -0.3]);
+        let text = mjcf_with(&robot, |scene| scene.excess_lengths = [0.0, 0.6, 0.0, -0.3]);
         let document = Document::parse(&text).expect("well formed");
         let all = bodies(&document);
         let feet = robot.ground().feet.positions([0.0; 4]);
@@ -83,8 +83,10 @@ fn each_foot_stands_where_the_contact_model_has_it_and_a_long_one_is_lower() {
 
 #[test]
 fn pads_of_other_shapes_touch_the_floor_and_light_limbs_leave_the_robots_mass() {
-    let before = weighed(&written(&robot("paper"), |_| {}));
-    let after = weighed(&written(&robot("paper"), |scene| scene.limbs = 0.2));
+    let before = weighed(&mjcf_with(&robot("paper"), |_| {}));
+    let after = weighed(&mjcf_with(&robot("paper"), |scene| {
+        scene.limb_mass_factor = 0.2
+    }));
     assert!((before.0 - after.0).abs() < 1e-3, "{before:?} {after:?}");
     let radius = robot("paper").parts().pad.radius;
     for (pads, count) in [
@@ -93,8 +95,8 @@ fn pads_of_other_shapes_touch_the_floor_and_light_limbs_leave_the_robots_mass() 
         // The dome is 2.08 mm high at its rim, 11 mm from its axis.
         (Pads::Terraces(0.1), 21),
     ] {
-        let text = written(&robot("paper"), |scene| {
-            (scene.pads, scene.shapes) = (pads, false);
+        let text = mjcf_with(&robot("paper"), |scene| {
+            (scene.pads, scene.has_shapes) = (pads, false);
         });
         let document = Document::parse(&text).expect("well formed");
         let all = bodies(&document);
@@ -129,11 +131,15 @@ fn pads_of_other_shapes_touch_the_floor_and_light_limbs_leave_the_robots_mass() 
 
 #[test]
 fn a_floor_has_its_blocks_its_slope_and_its_grip_on_each_pad() {
-    let text = written(&robot("paper"), |scene| {
+    let text = mjcf_with(&robot("paper"), |scene| {
         let (at, size) = ([20.0, 300.0], [10.0, 40.0, 2.0]);
         let turned = 30.0;
-        scene.floor.blocks.push(Block { at, size, turned });
-        scene.floor.rises = 30.0;
+        scene.floor.blocks.push(Block {
+            centre: at,
+            size,
+            rotation: turned,
+        });
+        scene.floor.slope = 30.0;
         scene.floor.friction = [0.1, 0.2, 0.3, 0.4];
     });
     let document = Document::parse(&text).expect("well formed");
@@ -173,7 +179,7 @@ fn a_floor_has_its_blocks_its_slope_and_its_grip_on_each_pad() {
 fn the_ball_that_touches_the_floor_is_that_of_the_pads_dome() {
     let assembly = Assembly::new(&robot("paper"));
     let pad = assembly.body("pad LF").expect("a pad");
-    let text = written(&robot("paper"), |_| ());
+    let text = mjcf_with(&robot("paper"), |_| ());
     let document = Document::parse(&text).expect("well formed");
     let mut nodes = document
         .descendants()
@@ -182,7 +188,7 @@ fn the_ball_that_touches_the_floor_is_that_of_the_pads_dome() {
     let radius = 1000.0 * numbers(ball.expect("a ball"), "size")[0];
     let parts = assembly.parts();
     let part = parts.iter().find(|part| part.bodies[0] == pad.name);
-    let (layers, _) = part.expect("a pad to print").printed();
+    let (layers, _) = part.expect("a pad to print").printed_layers();
     let mesh = Mesh::of(&Solid::of(&layers));
     // The printed pad lies on its back, centred on the origin; in the middle is the hole for the screw.
     let top = mesh.corners.iter().fold(0.0, |top, [.., z]| z.max(top));
@@ -217,7 +223,7 @@ fn the_ball_that_touches_the_floor_is_that_of_the_pads_dome() {
 #[test]
 fn a_slotted_strut_pulls_with_its_springs_force_and_yields_one_way() {
     let (force, rate) = (4.0, 0.4);
-    let text = written(&robot("paper"), |scene| {
+    let text = mjcf_with(&robot("paper"), |scene| {
         scene.pull = Some(Pull { force, rate })
     });
     let document = Document::parse(&text).expect("well formed");
@@ -239,7 +245,7 @@ fn a_slotted_strut_pulls_with_its_springs_force_and_yields_one_way() {
             );
         }
     }
-    let rigid = written(&robot("paper"), |scene| scene.pull = None);
+    let rigid = mjcf_with(&robot("paper"), |scene| scene.pull = None);
     assert!(!rigid.contains("slot"));
 }
 
@@ -247,7 +253,7 @@ fn a_slotted_strut_pulls_with_its_springs_force_and_yields_one_way() {
 fn a_servo_turns_no_faster_and_no_stronger_than_it_can() {
     for play in [0.0, 1.0] {
         let robot = robot("unequal");
-        let text = written(&robot, |scene| scene.play = play);
+        let text = mjcf_with(&robot, |scene| scene.play = play);
         let document = Document::parse(&text).expect("well formed");
         let motors = elements(&document, "actuator");
         for (servo, motor) in motors.iter().enumerate() {
@@ -283,7 +289,7 @@ fn servos_and_joints_of_a_robot_file_are_those_of_the_engine() {
         "[joints]\ndrag = 17.0\nslider = 0.5\n[servo]\nmodel = \"copy\"\nvolts = 4.2\nspin_up_ms = 10.0\n[servo.A1]",
     );
     let robot = Robot::parse(&text).expect("right");
-    let text = written(&robot, |_| {});
+    let text = mjcf_with(&robot, |_| {});
     let document = Document::parse(&text).expect("well formed");
     let joints: Vec<Node> = document
         .descendants()
@@ -319,8 +325,8 @@ fn a_course_has_the_angles_of_the_firmwares_tables_and_tells_its_last_cycle() {
     let robot = robot("own-gaits");
     let gait = robot.gait("stride").expect("stride");
     let course = Course::of(&robot, gait, 2, 1);
-    let (start, period) = (course.begin, course.period);
-    let text = written(&robot, |scene| scene.course = Some(course));
+    let (start, period) = (course.measure_start, course.period);
+    let text = mjcf_with(&robot, |scene| scene.course = Some(course));
     let document = Document::parse(&text).expect("well formed");
     let mut nodes = document.descendants();
     let numeric = nodes.find(|node| node.attribute("name") == Some("cycle"));
@@ -354,7 +360,7 @@ fn a_course_has_the_angles_of_the_firmwares_tables_and_tells_its_last_cycle() {
 #[test]
 fn the_file_says_how_much_harder_its_pads_slide_backward() {
     for (name, ratio) in [("paper", 1.0), ("unequal", 1.15), (GRAIN, 1.5)] {
-        let text = written(&robot(name), |_| {});
+        let text = mjcf_with(&robot(name), |_| {});
         let document = Document::parse(&text).expect("well formed");
         let mut nodes = document.descendants();
         let numeric = nodes.find(|node| node.attribute("name") == Some("back over forward"));
@@ -366,7 +372,7 @@ fn the_file_says_how_much_harder_its_pads_slide_backward() {
 #[test]
 fn a_name_may_hold_any_character() {
     let name = "a <b> & \"c\".toml";
-    let text = written(&robot("paper"), |scene| scene.name = name.to_owned());
+    let text = mjcf_with(&robot("paper"), |scene| scene.name = name.to_owned());
     let document = Document::parse(&text).expect("well formed");
     assert_eq!(document.root_element().attribute("model"), Some(name));
 }

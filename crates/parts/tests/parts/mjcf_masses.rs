@@ -5,8 +5,8 @@ use lizard_robot::Robot;
 use lizard_robot::servo::LEGS;
 use roxmltree::Document;
 
-use crate::mjcf_reader::{bodies, child, neutral, numbers, written};
-use crate::{ROBOTS, with};
+use crate::mjcf_reader::{bodies, child, mjcf_with, neutral, numbers};
+use crate::{ROBOTS, robot_with};
 
 /// The mass of all bodies of a MuJoCo file together, g, and their mass centre: forward, left, above the plate, mm.
 pub fn weighed(text: &str) -> (f64, [f64; 3]) {
@@ -41,7 +41,7 @@ fn with_body(name: &str, mass: f64, [ahead, left]: [f64; 2]) -> Robot {
 #[test]
 fn its_bodies_weigh_what_robot_toml_says_and_where() {
     for name in ROBOTS {
-        let own = with(name, "").ground().body;
+        let own = robot_with(name, "").ground().body;
         for (mass, centre) in [
             (own.mass, own.centre),
             (500.0, [20.0, -9.0]),
@@ -49,7 +49,7 @@ fn its_bodies_weigh_what_robot_toml_says_and_where() {
         ] {
             let robot = with_body(name, mass, centre);
             let bill = Bill::of(&Assembly::new(&robot), &[], &neutral(&robot));
-            let (grams, [ahead, left, up]) = weighed(&written(&robot, |_| {}));
+            let (grams, [ahead, left, up]) = weighed(&mjcf_with(&robot, |_| {}));
             // The mesh replaces each arc by chords, which cut off a little volume.
             assert!((grams / mass - 1.0).abs() < 2e-3, "{name} {grams} {mass}");
             let error = (ahead - centre[0]).hypot(left - centre[1]);
@@ -64,8 +64,8 @@ fn its_bodies_weigh_what_robot_toml_says_and_where() {
 #[test]
 fn the_mass_that_the_contact_model_gives_a_leg_is_that_of_its_parts() {
     for name in ROBOTS {
-        let robot = with(name, "");
-        let text = written(&robot, |_| {});
+        let robot = robot_with(name, "");
+        let text = mjcf_with(&robot, |_| {});
         let document = Document::parse(&text).expect("well formed");
         let ground = robot.ground();
         for leg in LEGS {

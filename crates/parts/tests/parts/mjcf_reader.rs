@@ -14,7 +14,7 @@ pub fn neutral(robot: &Robot) -> Solution {
 }
 
 /// The MuJoCo file of a robot whose scene is changed by `change`.
-pub fn written(robot: &Robot, change: impl FnOnce(&mut Scene)) -> String {
+pub fn mjcf_with(robot: &Robot, change: impl FnOnce(&mut Scene)) -> String {
     let assembly = Assembly::new(robot);
     let mut scene = Scene::of(&assembly);
     change(&mut scene);

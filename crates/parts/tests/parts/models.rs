@@ -9,11 +9,11 @@ use lizard_robot::Robot;
 use lizard_robot::servo::NAMES;
 use roxmltree::{Document, Node};
 
-use crate::mjcf_reader::{Placed, bodies, child, neutral, numbers, written};
-use crate::{ROBOTS, with};
+use crate::mjcf_reader::{Placed, bodies, child, mjcf_with, neutral, numbers};
+use crate::{ROBOTS, robot_with};
 
 /// The URDF and the SDF file of a robot whose scene is changed by `change`, and the names of their mesh files.
-fn both(robot: &Robot, change: impl FnOnce(&mut Scene)) -> ([String; 2], BTreeSet<String>) {
+fn urdf_and_sdf(robot: &Robot, change: impl FnOnce(&mut Scene)) -> ([String; 2], BTreeSet<String>) {
     let assembly = Assembly::new(robot);
     let mut scene = Scene::of(&assembly);
     change(&mut scene);
@@ -49,10 +49,10 @@ fn named<'a>(parent: Node<'a, 'a>, tag: &str) -> BTreeMap<String, Node<'a, 'a>> 
 }
 
 /// A body: placement, mass, mass centre, and inertia as xx, yy, zz, xy, xz, yz.
-type Read = (Placed, f64, Vec<f64>, Vec<f64>);
+type ReadBody = (Placed, f64, Vec<f64>, Vec<f64>);
 
 /// The placement of a frame that is given relative to another one by six numbers: x, y, z, roll, pitch, yaw.
-fn on(frame: Placed, six: &[f64]) -> Placed {
+fn frame_on(frame: Placed, six: &[f64]) -> Placed {
     assert_eq!(six[3..5], [0.0; 2], "it stays upright");
     Placed {
         at: frame.point(&six[..3]),
@@ -67,7 +67,7 @@ const WORLD: Placed = Placed {
 const INERTIA: [&str; 6] = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
 
 /// The bodies of a URDF file by name. Each is placed by the joints from the root to its link.
-fn read_urdf(document: &Document) -> BTreeMap<String, Read> {
+fn read_urdf(document: &Document) -> BTreeMap<String, ReadBody> {
     let root = document.root_element();
     let (links, joints) = (named(root, "link"), named(root, "joint"));
     let end = |joint: &Node, tag: &str| {
@@ -82,7 +82,9 @@ fn read_urdf(document: &Document) -> BTreeMap<String, Read> {
             link = end(joint, "parent");
         }
         assert_eq!(link, "base_link", "one root");
-        up.iter().rev().fold(WORLD, |frame, six| on(frame, six))
+        up.iter()
+            .rev()
+            .fold(WORLD, |frame, six| frame_on(frame, six))
     };
     let mut read = BTreeMap::new();
     for (name, link) in &links {
@@ -103,14 +105,14 @@ fn read_urdf(document: &Document) -> BTreeMap<String, Read> {
 }
 
 /// The bodies of an SDF file by name. Each is placed by the poses of the links to which it is relative.
-fn read_sdf(document: &Document) -> BTreeMap<String, Read> {
+fn read_sdf(document: &Document) -> BTreeMap<String, ReadBody> {
     let model = child(document.root_element(), "model");
     let links = named(model, "link");
     fn place<'a>(links: &BTreeMap<String, Node<'a, 'a>>, name: &str) -> Placed {
         let pose = child(links[name], "pose");
         let frame = pose.attribute("relative_to");
         let frame = frame.map_or(WORLD, |parent| place(links, parent));
-        on(frame, &floats(pose.text().expect("six numbers")))
+        frame_on(frame, &floats(pose.text().expect("six numbers")))
     }
     let mut read = BTreeMap::new();
     for (name, link) in &links {
@@ -132,12 +134,12 @@ fn their_bodies_are_those_of_mujocos_file_turned_ahead() {
     let (force, rate) = (4.0, 0.4);
     for name in ROBOTS {
         for (pull, play) in [(None, 0.0), (Some(Pull { force, rate }), 0.5)] {
-            let robot = with(name, "");
+            let robot = robot_with(name, "");
             let change = |scene: &mut Scene| (scene.pull, scene.play) = (pull, play);
-            let text = written(&robot, change);
+            let text = mjcf_with(&robot, change);
             let document = Document::parse(&text).expect("well formed");
             let wanted = bodies(&document);
-            let ([urdf, sdf], _) = both(&robot, change);
+            let ([urdf, sdf], _) = urdf_and_sdf(&robot, change);
             let [urdf, sdf] = [&urdf, &sdf].map(|text| Document::parse(text).expect("well formed"));
             for read in [read_urdf(&urdf), read_sdf(&sdf)] {
                 assert_eq!(read.len(), wanted.len());
@@ -164,7 +166,7 @@ fn their_bodies_are_those_of_mujocos_file_turned_ahead() {
 #[test]
 fn the_two_halves_of_each_cut_joint_of_the_urdf_coincide() {
     for name in ROBOTS {
-        let ([urdf, _], _) = both(&with(name, ""), |_| {});
+        let ([urdf, _], _) = urdf_and_sdf(&robot_with(name, ""), |_| {});
         let document = Document::parse(&urdf).expect("well formed");
         let (links, joints) = (
             read_urdf(&document),
@@ -194,8 +196,8 @@ fn the_two_halves_of_each_cut_joint_of_the_urdf_coincide() {
 
 #[test]
 fn servos_have_their_names_ranges_and_powers_in_both() {
-    let robot = with("unequal", "");
-    let ([urdf, sdf], _) = both(&robot, |_| {});
+    let robot = robot_with("unequal", "");
+    let ([urdf, sdf], _) = urdf_and_sdf(&robot, |_| {});
     let [urdf, sdf] = [&urdf, &sdf].map(|text| Document::parse(text).expect("well formed"));
     let model = child(sdf.root_element(), "model");
     let (in_urdf, in_sdf) = (named(urdf.root_element(), "joint"), named(model, "joint"));
@@ -225,7 +227,7 @@ fn servos_have_their_names_ranges_and_powers_in_both() {
 
 #[test]
 fn every_mesh_that_they_name_is_made_and_none_is_left_over() {
-    let (texts, meshes) = both(&with("paper", ""), |_| {});
+    let (texts, meshes) = urdf_and_sdf(&robot_with("paper", ""), |_| {});
     for text in &texts {
         let document = Document::parse(text).expect("well formed");
         let of_urdf = document
@@ -240,6 +242,6 @@ fn every_mesh_that_they_name_is_made_and_none_is_left_over() {
             .collect();
         assert_eq!(named, meshes);
     }
-    let (texts, _) = both(&with("paper", ""), |scene| scene.shapes = false);
+    let (texts, _) = urdf_and_sdf(&robot_with("paper", ""), |scene| scene.has_shapes = false);
     assert!(texts.iter().all(|text| !text.contains("mesh")));
 }

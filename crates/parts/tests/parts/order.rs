@@ -2,7 +2,7 @@
 
 use lizard_kinematics::Vector;
 use lizard_parts::{
-    Assembly, Body, Kind, Outline, ScrewOperation, Stage, Step, TurningPlace, Unfit, steps,
+    Assembly, Body, BuildProblem, Kind, Outline, ScrewOperation, Stage, Step, TurningPlace, steps,
 };
 
 use crate::{ROBOTS, assembly, neutral, slotted};
@@ -58,7 +58,7 @@ fn a_wrong_order_is_found() {
         steps[4].stages[0].adds =
             |body: &Body| matches!(body.kind, Kind::Horn) || body.name.starts_with("link");
         steps[8].stages.push(Stage {
-            at: TurningPlace::Robot,
+            turning_place: TurningPlace::Robot,
             adds: |body: &Body| matches!(body.kind, Kind::HexScrew(_)),
             turns: |_| false,
         });
@@ -74,7 +74,7 @@ fn a_pad_without_a_hole_for_the_key_is_found_when_the_feet_are_levelled() {
     let glued = slotted("paper", "").altered(|bodies| {
         let pad = |body: &&mut Body| body.name == "pad LF";
         for body in bodies.iter_mut().filter(pad) {
-            body.prisms[0].cut.clear();
+            body.prisms[0].cut_shapes.clear();
         }
     });
     let refused = glued
@@ -121,14 +121,14 @@ fn a_screw_that_nothing_lets_pass_refuses_the_robot() {
         let mut lid = plate.expect("a plate");
         lid.name = "deck lid".to_owned();
         for prism in &mut lid.prisms {
-            prism.cut.clear();
+            prism.cut_shapes.clear();
             prism.z = prism.z.map(|z| z + 50.0);
         }
         bodies.push(lid);
     });
     let refused = covered.access_poses(&order(&covered)).expect_err("a lid");
     assert_eq!(refused.by, "deck lid");
-    let message = Unfit::from(refused).to_string();
+    let message = BuildProblem::from(refused).to_string();
     let blocked = "at step 3 of the guide: deck lid is in the way, at every pose";
     assert!(message.contains(blocked), "{message}");
 }
@@ -142,7 +142,10 @@ fn parts_that_move_together_are_not_in_one_place() {
     let near = slotted("paper", "").altered(|bodies| {
         let screw = |body: &&mut Body| body.name == "screw standoff 1 above";
         for body in bodies.iter_mut().filter(screw) {
-            let heads = body.prisms.iter_mut().map(|prism| &mut prism.add[0]);
+            let heads = body
+                .prisms
+                .iter_mut()
+                .map(|prism| &mut prism.filled_shapes[0]);
             heads.for_each(|shape| shape.points[0].y -= 1.0);
         }
     });
@@ -170,14 +173,16 @@ fn above_a_head_that_can_be_reached_there_is_no_material() {
             let (Kind::Screw(_), [low, high]) = (screw.kind, &screw.prisms[..]) else {
                 continue;
             };
-            if high.add[0].width() <= low.add[0].width() || here == Some(6) {
+            if high.filled_shapes[0].width() <= low.filled_shapes[0].width() || here == Some(6) {
                 continue;
             }
             if blocked.iter().any(|of| of.screw == screw.name) {
                 assert!(name == "unequal" && screw.name.starts_with("screw anchor"));
                 continue;
             }
-            let at = assembly.place(screw.mount, &pose).map(high.add[0].middle());
+            let at = assembly
+                .place(screw.mount, &pose)
+                .map(high.filled_shapes[0].middle());
             for turn in 0..12 {
                 let rim = at + Vector::direction(30.0 * f64::from(turn)) * 1.99;
                 for up in 1..60 {

@@ -8,7 +8,7 @@ use crate::{GRAIN, assembly, body, neutral};
 
 /// The notch of a pad, its only hole with corners; `None` for a plain pad.
 fn notch(prisms: &[lizard_parts::Prism]) -> Option<&Shape> {
-    let mut cuts = prisms.iter().flat_map(|prism| &prism.cut);
+    let mut cuts = prisms.iter().flat_map(|prism| &prism.cut_shapes);
     cuts.find(|cut| cut.points.len() > 1)
 }
 
@@ -22,7 +22,7 @@ fn the_notches_of_all_four_pads_as_printed_and_put_on_point_to_the_head() {
         panic!("one kind of pad");
     };
     assert_eq!(pad.count(), 4);
-    let (layers, closed) = pad.printed();
+    let (layers, closed) = pad.printed_layers();
     assert_eq!(closed, 1, "the hole for the key, as in a plain pad");
     let notch = notch(&layers).expect("a notch in the file");
     // A second pose is also checked, because a foot never turns.
@@ -42,7 +42,7 @@ fn the_notches_of_all_four_pads_as_printed_and_put_on_point_to_the_head() {
             let y = if motion.flipped { -at.y } else { at.y };
             place.map(motion.frame.map(Vector::new(at.x, y)))
         };
-        let axis = place.map(screw.prisms[0].add[0].middle());
+        let axis = place.map(screw.prisms[0].filled_shapes[0].middle());
         for corner in &notch.points {
             let from_axis = to_robot(corner) - axis;
             // Robots of this project face along y.
@@ -66,12 +66,13 @@ fn a_pad_for_a_strip_lies_within_a_plain_one_and_is_as_high() {
         let mut notched = 0;
         for (plain, marked) in plain.prisms.iter().zip(&marked.prisms) {
             assert_eq!(plain.z, marked.z);
-            let radius = |of: &lizard_parts::Prism, end: usize| of.add[0].radius - of.inset[end];
+            let radius =
+                |of: &lizard_parts::Prism, end: usize| of.filled_shapes[0].radius - of.inset[end];
             for end in [0, 1] {
                 let beyond = radius(marked, end) - radius(plain, end);
                 assert!((-0.3..1e-9).contains(&beyond), "{leg}: {beyond}");
             }
-            if marked.cut.len() > plain.cut.len() {
+            if marked.cut_shapes.len() > plain.cut_shapes.len() {
                 let [less, more] = [marked, plain].map(|of| Outline::of(of).area());
                 assert!(less < more - 1.0, "{leg}: {less} {more}");
                 notched += 1;

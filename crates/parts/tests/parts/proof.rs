@@ -64,12 +64,12 @@ fn assert_bounds_hold(name: &str) {
     }
     for near in assembly.nearest(poses, FAR_MM - 0.2) {
         let of = mounts(&near.first, &near.second);
-        let mut apart = proof.apart.iter();
+        let mut apart = proof.separate_pairs.iter();
         let known = apart.find(|known| mounts(&known.first, &known.second) == of);
         let known = known.unwrap_or_else(|| panic!("{name}: nothing proved of {near}"));
         assert!(known.proved <= near.mm, "{name}: {near}, proved {known}");
     }
-    for near in proof.apart.iter().chain(&proof.meeting) {
+    for near in proof.separate_pairs.iter().chain(&proof.touching_pairs) {
         let Some(seen) = &near.seen else { continue };
         let accepted = assembly.robot().accepted(seen.pose);
         assert!(accepted.is_some(), "{name}: {near}");
@@ -103,7 +103,7 @@ fn rigid_struts_keep_the_distances_of_slotted_ones() {
         let strut = |body: &Body| matches!(body.mount, Mount::Strut(_));
         let proof = assembly.prove_some(|a, b| strut(a) || strut(b), |_, _| ());
         assert_eq!(proof.judge(), Ok(()), "{word}");
-        proof.least().expect("something is near").proved
+        proof.nearest().expect("something is near").proved
     });
     assert!(rigid >= sprung, "{rigid} {sprung}");
 }
@@ -184,7 +184,7 @@ fn with_longer_screw(name: &str, by: f64, downwards: bool) -> Assembly {
     slotted("paper", "").altered(|bodies| {
         let mut all = bodies.iter_mut();
         let screw = all.find(|body| body.name == name).expect(name);
-        let thin = |body: &Body, i: usize| body.prisms[i].add[0].width();
+        let thin = |body: &Body, i: usize| body.prisms[i].filled_shapes[0].width();
         let shank = usize::from(thin(screw, 1) < thin(screw, 0));
         let z = &mut screw.prisms[shank].z;
         if downwards {
@@ -232,7 +232,7 @@ fn swapped_layers_are_found() {
 fn a_hole_beside_its_pin_is_found() {
     let moved = slotted("paper", "").altered(|bodies| {
         for body in bodies.iter_mut().filter(|body| body.name == "coupler A4") {
-            for cut in &mut body.prisms[0].cut {
+            for cut in &mut body.prisms[0].cut_shapes {
                 for point in &mut cut.points {
                     *point = *point + Vector::new(0.0, 0.3);
                 }
@@ -272,7 +272,7 @@ fn a_rod_stays_in_its_sleeve_over_the_whole_stroke() {
             let slider = lizard.side(side);
             let [sleeve, rod] = ["sleeve", "rod"].map(|part| {
                 let body = body(&assembly, &format!("{part} {side}"));
-                let mut shapes = body.prisms.iter().flat_map(|prism| &prism.add);
+                let mut shapes = body.prisms.iter().flat_map(|prism| &prism.filled_shapes);
                 shapes.find(|shape| shape.points.len() > 2).expect(part)
             });
             let [start, end] = extent_along_x(sleeve, 0.0);
@@ -289,8 +289,8 @@ fn a_rod_stays_in_its_sleeve_over_the_whole_stroke() {
         let pair = |a: &Body, b: &Body| a.name.starts_with("sleeve") && b.name.starts_with("rod");
         let sliders = assembly.prove_some(pair, |_, _| ());
         // In the bore, each side of the rod has a clearance of 0.2 mm.
-        assert_eq!(sliders.meeting.len(), 2);
-        for near in &sliders.meeting {
+        assert_eq!(sliders.touching_pairs.len(), 2);
+        for near in &sliders.touching_pairs {
             let seen = near.seen.as_ref().expect("they are near").mm;
             assert!((seen - assembly.robot().parts().fit).abs() < 1e-9, "{near}");
         }
@@ -305,7 +305,7 @@ fn a_struts_screw_has_air_in_its_slot_all_the_way() {
     let screw = assembly.robot().parts().screw.diameter / 2.0;
     let is_own = |cut: &&Shape| (cut.points[0].x - leg.strut_length).abs() < 1e-9;
     let mut slots = strut.prisms[0]
-        .cut
+        .cut_shapes
         .iter()
         .filter(|cut| cut.points.len() == 2);
     let slot = slots.find(is_own).expect("a slot");

@@ -134,12 +134,12 @@ fn the_lines_of_a_robot_are_read_and_are_those_that_set_it() {
         # A2 trim 0 limit 48.59 228.59 dir - scale 10|# A3 trim 0.1 limit 48.59 228.59 dir - scale 10|\
         # A4 trim 20 limit 48.59 228.59 dir - scale 10";
     let lines: Vec<String> = said.split('|').map(str::to_owned).collect();
-    assert_eq!(Calibration::of_lines(&lines), Some(calibration()));
+    assert_eq!(Calibration::from_lines(&lines), Some(calibration()));
     for missing in 0..lines.len() {
         let mut rest = lines.clone();
         let is_needed = !rest.remove(missing).contains("pose");
         assert_eq!(
-            Calibration::of_lines(&rest).is_none(),
+            Calibration::from_lines(&rest).is_none(),
             is_needed,
             "{rest:?}"
         );

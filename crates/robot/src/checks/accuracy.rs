@@ -23,7 +23,7 @@ pub(crate) const ALL_PHASES: usize = CYCLE16 as usize;
 
 /// Computes the error of the tables of gait number `index` over `count` evenly spaced phases, where `count` divides
 /// [`ALL_PHASES`].
-pub(crate) fn worst(gait: &Gait, index: usize, tables: &Tables, count: usize) -> TableError {
+pub(crate) fn table_error(gait: &Gait, index: usize, tables: &Tables, count: usize) -> TableError {
     let mut error = TableError {
         max: 0.0,
         rms: 0.0,

@@ -17,7 +17,7 @@ use crate::tables::Tables;
 use crate::units::{FRAMES_PER_SECOND, PHASES, STEPS_PER_DEGREE};
 
 /// Number of evenly spaced phases that are checked in addition to the tables' own samples.
-const CHECKED: usize = 1024;
+const CHECKED_PHASES: usize = 1024;
 /// Number of phases at which the speed over one frame is computed.
 const SPEEDS: usize = 4096;
 /// The largest error allowed in a table, deg.
@@ -86,7 +86,7 @@ impl LeastMargin {
 }
 
 /// The message about a limit that a gait breaks.
-pub(crate) struct Broken {
+pub(crate) struct LimitBreach {
     /// The consequence for the robot, in words without figures.
     pub meaning: String,
     /// The figures, and the phase at which they occur.
@@ -105,9 +105,9 @@ pub(crate) fn check(
     tables: &Tables,
     robot: &Measures,
     firmware: &lizard_core::numbers::robot::Robot<'_>,
-) -> Result<Audit, Broken> {
+) -> Result<Audit, LimitBreach> {
     let mut found = Audit {
-        peak: fastest(gait),
+        peak: find_peak(gait),
         ..Audit::NONE
     };
     let mut worst: Option<(f64, Violation)> = None;
@@ -119,11 +119,11 @@ pub(crate) fn check(
         let sweeps = Pose(sweeps.map(Sweep));
         let phase = f64::from(phase) / PHASES;
         check_travels(robot, angles, phase)?;
-        if let Some(hazard) = Clearance::of(firmware, &sweeps).hazard(firmware) {
+        if let Some(hazard) = Clearance::of(firmware, &sweeps).first_hazard(firmware) {
             guard_stop.get_or_insert((phase, condition(&hazard)));
         }
         let solution = robot.lizard.solve(&angles.into());
-        let solution = solution.map_err(|fault| Broken {
+        let solution = solution.map_err(|fault| LimitBreach {
             meaning: no_loop(fault.part),
             problem: format!("{fault} {}", at(phase)),
         })?;
@@ -136,13 +136,13 @@ pub(crate) fn check(
         found.add(&solution, phase);
     }
     if let Some((phase, violation)) = worst {
-        return Err(Broken {
-            meaning: consequence(violation.what),
+        return Err(LimitBreach {
+            meaning: consequence(violation.check),
             problem: format!("{violation} {}", at(phase)),
         });
     }
     if let Some((phase, what)) = guard_stop {
-        return Err(Broken {
+        return Err(LimitBreach {
             meaning: consequence(what),
             problem: format!(
                 "margin or travel {what} is so near to its limit {} that the firmware's integers take it to be beyond; leave it a little room",
@@ -157,7 +157,7 @@ pub(crate) fn check(
     } = found.peak;
     let limit = robot.pace.gait_slew;
     if speed > limit {
-        return Err(Broken {
+        return Err(LimitBreach {
             meaning: format!("servo {} would have to turn too fast", NAMES[servo]),
             problem: format!(
                 "{speed:.1} deg/s {}; limits.gait_slew is {limit:.1} deg/s",
@@ -165,9 +165,9 @@ pub(crate) fn check(
             ),
         });
     }
-    let coarse = accuracy::worst(gait, index, tables, CHECKED);
+    let coarse = accuracy::table_error(gait, index, tables, CHECKED_PHASES);
     if coarse.max > ERROR_LIMIT {
-        return Err(Broken {
+        return Err(LimitBreach {
             meaning: format!(
                 "servo {} would have to turn too sharply",
                 NAMES[coarse.servo]
@@ -198,13 +198,13 @@ fn condition(hazard: &Hazard) -> Check {
 /// True if a violation breaks the same limit as an earlier violation, and by more.
 fn exceeds(violation: Violation, earlier: Violation) -> bool {
     let by = |v: Violation| (v.value - v.limit).abs();
-    violation.what == earlier.what && by(violation) > by(earlier)
+    violation.check == earlier.check && by(violation) > by(earlier)
 }
 
 /// Lists the phases to check: evenly spaced ones, and every sample of every servo.
 fn phases(table: &TableGait) -> Vec<u16> {
     let every = |count: usize| (0..count).map(move |i| (i * (ALL_PHASES / count)) as u16);
-    let mut phases: Vec<u16> = every(CHECKED).collect();
+    let mut phases: Vec<u16> = every(CHECKED_PHASES).collect();
     for channel in &table.channels {
         phases.extend(every(SAMPLES).map(|sample| sample.wrapping_sub(channel.offset)));
     }
@@ -214,7 +214,7 @@ fn phases(table: &TableGait) -> Vec<u16> {
 }
 
 /// Refuses servo angles outside a servo's travel.
-fn check_travels(robot: &Measures, angles: [f64; 4], phase: f64) -> Result<(), Broken> {
+fn check_travels(robot: &Measures, angles: [f64; 4], phase: f64) -> Result<(), LimitBreach> {
     // Both the limits of the travel and the sample are rounded to an angle step.
     const STEP: f64 = 1.0 / STEPS_PER_DEGREE;
     for ((servo, angle), name) in robot.servos.iter().zip(angles).zip(NAMES) {
@@ -222,7 +222,7 @@ fn check_travels(robot: &Measures, angles: [f64; 4], phase: f64) -> Result<(), B
         let sweep = angle - servo.neutral;
         if sweep < min - STEP || sweep > max + STEP {
             let (min, max) = (servo.neutral + min, servo.neutral + max);
-            return Err(Broken {
+            return Err(LimitBreach {
                 meaning: format!("servo {name} would have to turn farther than it can"),
                 problem: format!(
                     "{angle:.2} deg at phase {phase:.4} is outside its travel of {min:.2} to {max:.2} deg"
@@ -234,7 +234,7 @@ fn check_travels(robot: &Measures, angles: [f64; 4], phase: f64) -> Result<(), B
 }
 
 /// Finds the frame of a gait at full speed in which a servo turns fastest.
-fn fastest(gait: &Gait) -> Peak {
+fn find_peak(gait: &Gait) -> Peak {
     let frame = 1.0 / (FRAMES_PER_SECOND * gait.period);
     let mut peak = Audit::NONE.peak;
     for i in 0..SPEEDS {

@@ -8,7 +8,7 @@ use lizard_core::numbers::units::phase16;
 use lizard_kinematics::Pose;
 
 use crate::checks::accuracy::{self, TableError};
-use crate::checks::audit::{self, Audit, Broken};
+use crate::checks::audit::{self, Audit, LimitBreach};
 use crate::file::{Checked, Fault};
 use crate::gaits::{Bars, Gait, Stride};
 use crate::measures::Measures;
@@ -36,7 +36,7 @@ impl CheckedGait {
         firmware: &lizard_core::numbers::robot::Robot,
     ) -> Checked<Self> {
         let audit = audit::check(&gait, index, tables, measures, firmware);
-        let audit = audit.map_err(|Broken { meaning, problem }| {
+        let audit = audit.map_err(|LimitBreach { meaning, problem }| {
             let name = &gait.name;
             Fault::clause(format!("gait.{name}"), problem)
                 .meaning(format!("in \"{name}\" {meaning}"))
@@ -153,7 +153,7 @@ impl CheckedGait {
 
     /// The error of the tables over `count` evenly spaced phases.
     pub(crate) fn error_over(&self, count: usize) -> TableError {
-        accuracy::worst(&self.gait, self.index, &self.tables, count)
+        accuracy::table_error(&self.gait, self.index, &self.tables, count)
     }
 
     /// Predicts one cycle on this ground, from phase 0, with the contact model. If legs lag, the result is the
@@ -162,16 +162,16 @@ impl CheckedGait {
     /// A part of the movement is unknown if it depends on a tie: two feet that pull against the other two, equally
     /// strongly. Ties are found with rigid legs, because they depend on the pads alone.
     pub fn predict(&self, ground: &Ground) -> Prediction {
-        let known = ground.rigid().predict(self.cycle(COARSE));
+        let known = ground.rigid().predict(self.cycle(TIE_STEPS));
         known.keep_known(self.simulate_cycle(ground).travel)
     }
 
     /// Simulates one cycle on this ground, even if the result depends on ties. If legs lag, the result is the second
     /// cycle.
-    pub fn simulate_cycle(&self, ground: &Ground) -> Walked {
+    pub fn simulate_cycle(&self, ground: &Ground) -> SimulatedCycle {
         let mut walker = Walker::new(*ground, self.sweeps(self.phase(0.0)));
         let mut steps = STEPS;
-        if ground.drive.lags() {
+        if ground.drive.can_lag() {
             steps = LAGGING_STEPS;
             self.cycle(steps).for_each(|sweeps| {
                 walker.step(sweeps);
@@ -183,7 +183,7 @@ impl CheckedGait {
             walker.step(sweeps);
             lag = walker.lag().into_iter().map(f64::abs).fold(lag, f64::max);
         }
-        Walked {
+        SimulatedCycle {
             travel: walker.place().seen_from(begin),
             lag,
         }
@@ -191,12 +191,12 @@ impl CheckedGait {
 
     /// Simulates two cycles on this ground frame by frame, as the firmware sends them, with servos that have these
     /// motors, and returns the movement in the second. `pace` is 1 for the gait's own speed.
-    pub fn driven(&self, ground: &Ground, motors: &Motors, pace: f64) -> Travel {
-        self.driven_scaled(ground, motors, pace, 1.0)
+    pub fn simulate_driven_cycle(&self, ground: &Ground, motors: &Motors, pace: f64) -> Travel {
+        self.simulate_scaled_cycle(ground, motors, pace, 1.0)
     }
 
     /// Simulates as [`CheckedGait::driven`] does, with servos that turn `scale` times as far as the firmware assumes.
-    pub(crate) fn driven_scaled(
+    pub(crate) fn simulate_scaled_cycle(
         &self,
         ground: &Ground,
         motors: &Motors,
@@ -234,11 +234,11 @@ const STEPS: usize = 1000;
 /// mm.
 const LAGGING_STEPS: usize = 250;
 /// Steps in a cycle for detecting ties. A step of this search takes longer to compute.
-const COARSE: usize = 250;
+const TIE_STEPS: usize = 250;
 
 /// The result of a cycle simulated step by step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Walked {
+pub struct SimulatedCycle {
     /// The movement of the body over the cycle.
     pub travel: Travel,
     /// Largest lag of a leg behind its servo, deg; 0 if legs are rigid.

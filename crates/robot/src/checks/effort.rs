@@ -100,7 +100,7 @@ impl Effort {
     /// The highest pace, up to 1, at which no servo exceeds its torque-speed line on a supply; 0 if a servo exceeds
     /// its line at every pace.
     #[must_use]
-    pub fn pace(&self, supply: f64) -> f64 {
+    pub fn max_pace(&self, supply: f64) -> f64 {
         if self.line_share(1.0, supply) <= 1.0 {
             return 1.0;
         }
@@ -117,7 +117,7 @@ impl Effort {
 
     /// The largest torque that a servo needs for pads, joints and body, N mm.
     #[must_use]
-    pub fn load(&self) -> f64 {
+    pub fn max_load(&self) -> f64 {
         let all = self.servos.iter().flat_map(|(_, samples)| samples);
         all.map(|sample| sample.load.abs()).fold(0.0, f64::max)
     }

@@ -11,5 +11,5 @@ mod effort;
 
 pub use accuracy::TableError;
 pub use audit::{Audit, LeastMargin, Peak};
-pub use checked_gait::{CheckedGait, Walked};
+pub use checked_gait::{CheckedGait, SimulatedCycle};
 pub use effort::{Effort, HIGH_LINE_SHARE};

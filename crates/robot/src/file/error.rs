@@ -84,7 +84,7 @@ impl Fault {
 
     /// A mistake in a number outside its range.
     pub fn range(key: String, value: f64, (min, max): (f64, f64), unit: &str) -> Self {
-        let value = short(value);
+        let value = format_number(value);
         Self::new(
             key,
             format!("is {value}; it must be within {min} to {max} {unit}"),
@@ -105,7 +105,7 @@ impl Fault {
 }
 
 /// Formats a number as its author wrote it, or with an exponent if it would otherwise have many zeros.
-pub(crate) fn short(value: f64) -> String {
+pub(crate) fn format_number(value: f64) -> String {
     if value != 0.0 && !(1e-6..1e9).contains(&value.abs()) {
         format!("{value:e}")
     } else {

@@ -11,7 +11,7 @@ mod syntax;
 mod text;
 
 pub use error::Error;
-pub(crate) use error::{Checked, Fault, hint, short};
+pub(crate) use error::{Checked, Fault, format_number, hint};
 #[cfg(test)]
 pub(crate) use reader::{KeyRead, READS};
 pub(crate) use reader::{Section, parse};

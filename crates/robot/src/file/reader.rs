@@ -88,12 +88,12 @@ impl<'a> Section<'a> {
             key: String::new(),
             table,
         }
-        .only(allowed)
+        .require_known_keys(allowed)
     }
 
     /// Opens the table `name`, which must exist and may have only the keys `allowed`.
     pub fn section(&self, name: &str, allowed: &[&str]) -> Checked<Self> {
-        self.open(name)?.only(allowed)
+        self.open(name)?.require_known_keys(allowed)
     }
 
     /// Opens the table `name`, which may have any keys.
@@ -110,7 +110,7 @@ impl<'a> Section<'a> {
     }
 
     /// Returns the table if all its keys are in `allowed`; refuses any other key.
-    pub fn only(self, allowed: &[&str]) -> Checked<Self> {
+    pub fn require_known_keys(self, allowed: &[&str]) -> Checked<Self> {
         #[cfg(test)]
         for name in allowed {
             self.note(name, KeyRead::Allowed);
@@ -126,7 +126,7 @@ impl<'a> Section<'a> {
     }
 
     /// Refuses the keys `names`, which belong to an earlier version of the file; `instead` says what to write.
-    pub fn moved(&self, names: &[&str], instead: &str) -> Checked<()> {
+    pub fn refuse_moved_keys(&self, names: &[&str], instead: &str) -> Checked<()> {
         match names.iter().find(|name| self.has(name)) {
             Some(name) => {
                 let message = format!("is not read any more; write {instead}");
@@ -169,7 +169,7 @@ impl<'a> Section<'a> {
         const EXPECTED: &str = "a number";
         let value = self.value(name, EXPECTED)?;
         let value = number(value).ok_or_else(|| self.wrong_type(name, value, EXPECTED))?;
-        self.within(name, value, (min, max), unit)
+        self.require_in_range(name, value, (min, max), unit)
     }
 
     /// Reads the number of a key; returns `default` if the key is left out.
@@ -231,7 +231,7 @@ impl<'a> Section<'a> {
             return Err(self.fault(name, message));
         };
         for value in numbers {
-            self.within(name, value, (min, max), unit)?;
+            self.require_in_range(name, value, (min, max), unit)?;
         }
         Ok(numbers)
     }
@@ -264,7 +264,7 @@ impl<'a> Section<'a> {
                     key: self.path(&name),
                     table,
                 }
-                .only(allowed),
+                .require_known_keys(allowed),
                 other => Err(self.wrong_type(&name, other, "a table")),
             }
         };
@@ -295,7 +295,13 @@ impl<'a> Section<'a> {
     }
 
     /// Returns a key's value if it is in a range, both limits included; refuses it otherwise.
-    fn within(&self, name: &str, value: f64, range: (f64, f64), unit: &str) -> Checked<f64> {
+    fn require_in_range(
+        &self,
+        name: &str,
+        value: f64,
+        range: (f64, f64),
+        unit: &str,
+    ) -> Checked<f64> {
         match (range.0..=range.1).contains(&value) {
             true => Ok(value),
             false => Err(Fault::range(self.path(name), value, range, unit)),

@@ -85,11 +85,11 @@ fn find_mistake_in_line(line: &str) -> Option<String> {
     if value.is_empty() {
         return Some(format!("`{key}` has no value behind the ="));
     }
-    number(value).or_else(|| word(value))
+    explain_number(value).or_else(|| explain_bare_word(value))
 }
 
 /// The message for a number in a form that TOML does not allow; `None` for anything else.
-fn number(value: &str) -> Option<String> {
+fn explain_number(value: &str) -> Option<String> {
     let is_number =
         |text: &str| text.parse::<f64>().is_ok() && !text.starts_with(char::is_alphabetic);
     let digits = |text: &str| !text.is_empty() && text.chars().all(|c| c.is_ascii_digit());
@@ -126,7 +126,7 @@ fn number(value: &str) -> Option<String> {
 }
 
 /// The message for a string without quotation marks; `None` for anything else.
-fn word(value: &str) -> Option<String> {
+fn explain_bare_word(value: &str) -> Option<String> {
     let plain = |c: char| c.is_alphanumeric() || "_-. ".contains(c);
     let is_word = value.starts_with(char::is_alphabetic) && value.chars().all(plain);
     let is_known = ["true", "false", "inf", "nan"].contains(&value);

@@ -33,7 +33,7 @@ const WAVEFORMS: [&str; 3] = ["still", "wave", "held"];
 const REFERENCES: [&str; 3] = ["reverse", "mirror", "like"];
 
 /// Reads the gaits in the order of the file and resolves their references.
-pub(crate) fn gaits(root: &Section, body: &Measures) -> Checked<Vec<Gait>> {
+pub(crate) fn read_gaits(root: &Section, body: &Measures) -> Checked<Vec<Gait>> {
     let section = root.open("gait")?;
     let names = section.names();
     for name in &names {
@@ -46,7 +46,7 @@ pub(crate) fn gaits(root: &Section, body: &Measures) -> Checked<Vec<Gait>> {
         );
         return Err(Fault::new("gait", message));
     }
-    check_keys(&section, &names)?;
+    check_boot_keys(&section, &names)?;
     if names.first() != Some(&"stand") {
         let message =
             "the first gait must be stand, the neutral pose that the robot takes at power-on";
@@ -76,7 +76,7 @@ pub(crate) fn gaits(root: &Section, body: &Measures) -> Checked<Vec<Gait>> {
 
 /// Refuses two gaits or routines that the EEPROM cannot tell apart: it stores the gait or routine of `boot` as a
 /// number computed from the name.
-pub(super) fn check_keys(section: &Section, names: &[&str]) -> Checked<()> {
+pub(super) fn check_boot_keys(section: &Section, names: &[&str]) -> Checked<()> {
     let mut names_by_key = HashMap::new();
     for name in names {
         let written = name
@@ -138,7 +138,7 @@ impl<'a> Resolver<'a> {
         let gait = match definition_key(&table)? {
             "waveform" => read_waveform(name, &table, self.body)?,
             "head or tail" => read_path(name, &table, self.body)?,
-            reference => self.derived(name, &table, reference)?,
+            reference => self.read_derived(name, &table, reference)?,
         };
         self.chain.pop();
         self.known.insert(name, gait.clone());
@@ -146,7 +146,7 @@ impl<'a> Resolver<'a> {
     }
 
     /// Reads a gait that is derived from another one.
-    fn derived(
+    fn read_derived(
         &mut self,
         name: &'a str,
         table: &Section<'a>,
@@ -272,10 +272,11 @@ fn read_path(name: &str, table: &Section, body: &Measures) -> Checked<Gait> {
             x: read_harmonics(&section, "x")?,
             y: read_harmonics(&section, "y")?,
         };
-        let legs = PathLeg::pair(body.lizard, body.neutral(), end, &path).map_err(|problem| {
-            let meaning = format!("in \"{name}\" the {end} would not reach its line");
-            Fault::clause(section.key.clone(), problem).meaning(meaning)
-        })?;
+        let legs =
+            PathLeg::both_servos(body.lizard, body.neutral(), end, &path).map_err(|problem| {
+                let meaning = format!("in \"{name}\" the {end} would not reach its line");
+                Fault::clause(section.key.clone(), problem).meaning(meaning)
+            })?;
         for (servo, leg) in legs {
             strides[servo] = Stride {
                 waveform: Waveform::Path(Box::new(leg)),

@@ -19,4 +19,4 @@ pub use path::{Harmonic, Path};
 pub use path_leg::PathLeg;
 pub use routine::Routine;
 pub use waveform::Waveform;
-pub(crate) use waveform::canonical;
+pub(crate) use waveform::canonicalize;

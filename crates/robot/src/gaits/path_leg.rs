@@ -27,7 +27,7 @@ impl PathLeg {
     ///
     /// # Errors
     /// Returns the message for a point of the path that is out of reach.
-    pub(crate) fn pair(
+    pub(crate) fn both_servos(
         lizard: Lizard,
         neutral: [f64; 4],
         end: End,

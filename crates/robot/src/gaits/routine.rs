@@ -5,7 +5,7 @@ use lizard_core::console::command::MAX_CYCLES;
 use lizard_core::numbers::gaits::{Gait as Record, MAX_GAITS, Step};
 
 use crate::file::{Checked, Fault, Section, hint};
-use crate::gaits::define::{check_keys, check_name};
+use crate::gaits::define::{check_boot_keys, check_name};
 use crate::measures::{INPUTS, Inputs};
 use crate::units::FRAMES_PER_SECOND;
 
@@ -70,7 +70,11 @@ impl Routine {
 }
 
 /// Reads the routines in the order of the file, for a robot with these gaits.
-pub(crate) fn routines(root: &Section, gaits: &[&str], inputs: &Inputs) -> Checked<Vec<Routine>> {
+pub(crate) fn read_routines(
+    root: &Section,
+    gaits: &[&str],
+    inputs: &Inputs,
+) -> Checked<Vec<Routine>> {
     if !root.has("routine") {
         return Ok(Vec::new());
     }
@@ -83,7 +87,7 @@ pub(crate) fn routines(root: &Section, gaits: &[&str], inputs: &Inputs) -> Check
         }
     }
     let all: Vec<&str> = gaits.iter().chain(&names).copied().collect();
-    check_keys(&section, &all)?;
+    check_boot_keys(&section, &all)?;
     if all.len() > MAX_GAITS {
         let count = all.len();
         let message = format!(
@@ -156,7 +160,9 @@ fn parse_records(
 ) -> Result<Vec<Step>, String> {
     let words: Vec<&str> = text.split_whitespace().collect();
     let until = |name: &str| {
-        let input = inputs.named(name).ok_or_else(|| no_input(name))?;
+        let input = inputs
+            .find_input(name)
+            .ok_or_else(|| missing_input_message(name))?;
         Ok::<_, String>(Step {
             kind: Step::UNTIL,
             gait: input.byte(),
@@ -183,7 +189,7 @@ fn parse_records(
 }
 
 /// The message about a step with an input that robot.toml does not have.
-fn no_input(name: &str) -> String {
+fn missing_input_message(name: &str) -> String {
     if INPUTS.contains(&name) {
         return format!(
             "names the input \"{name}\", which has no pin; [input.{name}] must have one, as pin = \"A1\""

@@ -82,7 +82,7 @@ fn smoothstep(t: f64) -> f64 {
 ///
 /// Of the held waveforms, those of the first and the last swing are each other's negative, shifted, and so are those
 /// of the second and the third swing. So two tables are enough for all four.
-pub(crate) fn canonical(waveform: &Waveform) -> (Waveform, f64, f64) {
+pub(crate) fn canonicalize(waveform: &Waveform) -> (Waveform, f64, f64) {
     match waveform {
         Waveform::Held { turn } if *turn >= 2 => (
             Waveform::Held { turn: 3 - turn },
@@ -171,7 +171,7 @@ mod tests {
     #[test]
     fn a_canonical_waveform_reproduces_the_original() {
         for w in all() {
-            let (base, shift, sign) = canonical(&w);
+            let (base, shift, sign) = canonicalize(&w);
             for i in 0..1000 {
                 let u = i as f64 / 1e3;
                 assert!(

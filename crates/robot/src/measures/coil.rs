@@ -27,7 +27,7 @@ impl Coil {
     }
 
     /// Mean diameter of the coil, mm.
-    pub fn mean(&self) -> f64 {
+    pub fn mean_diameter(&self) -> f64 {
         self.outer - self.wire
     }
 
@@ -40,15 +40,15 @@ impl Coil {
 
     /// Rate, N/mm: G d^4 / (8 D^3 n).
     pub fn rate(&self) -> f64 {
-        SHEAR * self.wire.powi(4) / (8.0 * self.mean().powi(3) * self.coils())
+        SHEAR * self.wire.powi(4) / (8.0 * self.mean_diameter().powi(3) * self.coils())
     }
 
     /// Initial tension: the force that opens the coils, N. Winding leaves a shear stress that falls with
     /// C, the ratio of the coil's mean diameter to the wire's. Makers reach 231 / e^(0.105 C) MPa, plus or
     /// minus 6.9 (4 - (C - 3) / 6.5) MPa.
     pub fn initial_tension(&self) -> f64 {
-        let ratio = self.mean() / self.wire;
-        self.force_of(231.0 * (-0.105 * ratio).exp())
+        let ratio = self.mean_diameter() / self.wire;
+        self.force_at_stress(231.0 * (-0.105 * ratio).exp())
     }
 
     /// Force at a length inside the hooks, N.
@@ -58,12 +58,12 @@ impl Coil {
 
     /// Shear stress at a force, N/mm^2.
     pub fn stress(&self, force: f64) -> f64 {
-        force / self.force_of(1.0)
+        force / self.force_at_stress(1.0)
     }
 
     /// Force at a shear stress in N/mm^2, N.
-    fn force_of(&self, stress: f64) -> f64 {
-        PI * self.wire.powi(3) * stress / (8.0 * self.mean())
+    fn force_at_stress(&self, stress: f64) -> f64 {
+        PI * self.wire.powi(3) * stress / (8.0 * self.mean_diameter())
     }
 }
 

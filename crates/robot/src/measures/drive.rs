@@ -1,6 +1,6 @@
 //! The drive from a servo's link to its leg: `[leg.drive]` in robot.toml.
 
-use lizard_contact::{Drive, Kind, Strut};
+use lizard_contact::{Drive, DriveKind, Strut};
 
 use crate::file::{Checked, Section, hint};
 use crate::measures::legs::LegPlan;
@@ -10,7 +10,10 @@ use crate::measures::strut;
 const TABLE: &str = "drive";
 const KEYS: [&str; 4] = ["kind", "play", "force", "rate"];
 /// The kinds of drive, with the keys that each has in addition to `kind` and `play`.
-const KINDS: [(&str, &[&str]); 2] = [(Kind::WORDS[0], &[]), (Kind::WORDS[1], &["force", "rate"])];
+const KINDS: [(&str, &[&str]); 2] = [
+    (DriveKind::WORDS[0], &[]),
+    (DriveKind::WORDS[1], &["force", "rate"]),
+];
 
 /// Reads `[leg.drive]`. If it is left out, the legs are rigid.
 pub(crate) fn read(
@@ -31,7 +34,7 @@ pub(crate) fn read(
         let message = "is \"spring\", which no part is; write \"strut\" with the force and rate of its spring, or \"rigid\"";
         return Err(section.fault("kind", message));
     }
-    let section = section.only(&KEYS)?;
+    let section = section.require_known_keys(&KEYS)?;
     let Some((_, own)) = KINDS.into_iter().find(|(known, _)| *known == word) else {
         let hint = hint(word, &KINDS.map(|(known, _)| known));
         return Err(section.fault("kind", format!("is \"{word}\"; {hint}")));
@@ -42,14 +45,14 @@ pub(crate) fn read(
     }
     let kind = match word {
         "strut" => {
-            let coil = strut::of_coil(legs, neutral, parts, &parts.spring);
-            Kind::Strut(Strut {
+            let coil = strut::strut_with_coil(legs, neutral, parts, &parts.spring);
+            DriveKind::Strut(Strut {
                 force: section.number_or("force", coil.force, 0.01, 100.0, "N")?,
                 rate: section.number_or("rate", coil.rate, 0.0, 100.0, "N/mm")?,
                 ..coil
             })
         }
-        _ => Kind::Rigid,
+        _ => DriveKind::Rigid,
     };
     let play = section.number_or("play", 0.0, 0.0, 20.0, "deg")?;
     Ok(Drive { kind, play })

@@ -16,9 +16,9 @@ use crate::measures::parts::Parts;
 /// the paper's robot, the hips are 55 mm ahead and 35 mm to the side.
 const FOOT: [f64; 2] = [-3.5, 2.5];
 /// Range of the hips' distance ahead, mm.
-const AHEAD: (f64, f64) = (1.0, 500.0);
+const HIP_FORWARD_RANGE: (f64, f64) = (1.0, 500.0);
 /// Range of the hips' distance to the side, mm.
-const SIDE: (f64, f64) = (0.0, 500.0);
+const HIP_SIDE_RANGE: (f64, f64) = (0.0, 500.0);
 /// Largest difference of two lengths that count as equal, mm.
 const SAME_LENGTH_MM: f64 = 0.005;
 
@@ -40,13 +40,13 @@ impl Hips {
             false => Ok(None),
         };
         Ok(Self {
-            ahead: mm(AHEAD_KEY, AHEAD)?,
-            side: mm(SIDE_KEY, SIDE)?,
+            ahead: mm(AHEAD_KEY, HIP_FORWARD_RANGE)?,
+            side: mm(SIDE_KEY, HIP_SIDE_RANGE)?,
         })
     }
 
     /// Places the feet. Refuses hips that contradict pivot and foot, or that are out of range.
-    pub fn feet(&self, lizard: &Lizard, parts: &Parts, mount: f64) -> Checked<Feet> {
+    pub fn place_feet(&self, lizard: &Lizard, parts: &Parts, mount: f64) -> Checked<Feet> {
         // Left and right are mirror images; head and tail may have different widths.
         let shafts = lizard.shafts();
         let [head, tail] = End::ALL.map(|end| {
@@ -70,9 +70,9 @@ impl Hips {
             };
             Err(Fault::new(format!("leg.{key}"), problem))
         };
-        let side = |end: Vector| placed(self.side, end.x, SIDE_KEY, SIDE);
+        let side = |end: Vector| placed(self.side, end.x, SIDE_KEY, HIP_SIDE_RANGE);
         Ok(Feet {
-            hip_forward: placed(self.ahead, head.y, AHEAD_KEY, AHEAD)?,
+            hip_forward: placed(self.ahead, head.y, AHEAD_KEY, HIP_FORWARD_RANGE)?,
             hip_side: [side(head)?, side(tail)?],
             mount,
             reach: lizard.leg.crank,
@@ -118,7 +118,7 @@ mod tests {
         assert_eq!(hips("hip_side = 36.0", ""), (55.0, [36.0; 2]));
         let foot = |robot: &Robot| {
             let leg = robot.legs()[1];
-            leg.along * leg.foot.x + leg.along.left() * leg.foot.y
+            leg.coupler_direction * leg.foot.x + leg.coupler_direction.rotated_left() * leg.foot.y
         };
         let built = robot("hip_forward = 57.0\nhip_side = 36.0", "").expect("a robot");
         let error = foot(&built) - Vector::new(36.0 - 38.5, 57.0 - 57.5);

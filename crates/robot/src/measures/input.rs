@@ -62,7 +62,7 @@ impl Inputs {
     }
 
     /// The input of this name in the core's representation; `None` if the robot does not have it.
-    pub(crate) fn named(&self, name: &str) -> Option<Input> {
+    pub(crate) fn find_input(&self, name: &str) -> Option<Input> {
         match name {
             "button" => self.button.map(Input::button),
             "nose" => self.nose.map(Input::nose),

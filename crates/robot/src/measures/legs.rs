@@ -23,13 +23,13 @@ pub struct LegPlan {
     /// The servo's shaft, mm, chassis frame.
     pub shaft: Vector,
     /// The driven crank's pivot, mm, chassis frame.
-    pub driven: Vector,
+    pub crank_pivot: Vector,
     /// The follower's pivot, mm, chassis frame.
-    pub idle: Vector,
+    pub follower_pivot: Vector,
     /// Unit vector from the driven to the follower's pivot: the coupler's direction in every pose.
-    pub along: Vector,
+    pub coupler_direction: Vector,
     /// Angle from the servo's crank to the leg's crank while the leg does not lag, deg.
-    pub set: f64,
+    pub crank_offset: f64,
     /// The crank's joint with the coupler, in the crank's frame, mm: x points as the
     /// servo's crank does while the leg does not lag.
     pub joint: Vector,
@@ -76,7 +76,7 @@ impl LegPlan {
         // may be at either end of the ground link; the end that is farther from the servo is used.
         let link = Vector::direction(set) * lizard.leg.ground;
         let [idle, other] = [driven + link, driven - link];
-        let idle = match (idle - shaft).square() > (other - shaft).square() {
+        let idle = match (idle - shaft).length_squared() > (other - shaft).length_squared() {
             true => idle,
             false => other,
         };
@@ -86,10 +86,10 @@ impl LegPlan {
         let [radius, angle] = parts.anchor;
         Self {
             shaft,
-            driven,
-            idle,
-            along,
-            set,
+            crank_pivot: driven,
+            follower_pivot: idle,
+            coupler_direction: along,
+            crank_offset: set,
             joint: Vector::direction(set) * lizard.leg.crank,
             foot: Vector::new(foot.dot(along), along.cross(foot)),
             strut: strut * (1.0 / strut.length()),
@@ -103,17 +103,19 @@ impl LegPlan {
     pub fn at(&self, servo: f64, leg: f64) -> LegPlace {
         let turned = |angle: f64, v: Vector| {
             let x = Vector::direction(angle);
-            x * v.x + x.left() * v.y
+            x * v.x + x.rotated_left() * v.y
         };
-        let pivots = [self.driven, self.idle];
+        let pivots = [self.crank_pivot, self.follower_pivot];
         let joints = pivots.map(|pivot| pivot + turned(leg, self.joint));
         LegPlace {
             pivots,
             joints,
-            foot: joints[0] + self.along * self.foot.x + self.along.left() * self.foot.y,
+            foot: joints[0]
+                + self.coupler_direction * self.foot.x
+                + self.coupler_direction.rotated_left() * self.foot.y,
             strut: [
                 self.shaft + turned(servo, self.anchor),
-                self.driven + turned(leg, self.anchor),
+                self.crank_pivot + turned(leg, self.anchor),
             ],
         }
     }
@@ -176,13 +178,18 @@ mod tests {
     fn the_papers_legs_are_pivoted_beside_their_servos() {
         let near = |a: Vector, x: f64, y: f64| (a - Vector::new(x, y)).length() < 1e-9;
         let right = robot("paper").legs()[1];
-        assert!(near(right.driven, 10.0 + 28.5, 67.5 - 10.0), "{right:?}");
+        assert!(
+            near(right.crank_pivot, 10.0 + 28.5, 67.5 - 10.0),
+            "{right:?}"
+        );
         // The ground link: 50 mm long, and turned by 41.41 deg from straight to the side toward the middle.
         let (across, back) = (37.5, 50.0 * 0.4375f64.sqrt());
-        assert!((right.idle - right.driven - Vector::new(across, -back)).length() < 1e-4);
+        assert!(
+            (right.follower_pivot - right.crank_pivot - Vector::new(across, -back)).length() < 1e-4
+        );
         let left = robot("paper").legs()[0];
         assert!(
-            near(left.driven, -right.driven.x, right.driven.y),
+            near(left.crank_pivot, -right.crank_pivot.x, right.crank_pivot.y),
             "{left:?}"
         );
     }

@@ -31,7 +31,7 @@ pub use motor::ServoType;
 pub use parts::{Horn, Pad, Parts, Screw, ServoBody};
 pub use plate::Plate;
 pub use servo::{Servo, SpeedLimits};
-pub(crate) use strut::{mounted_spring_length, of_coil};
+pub(crate) use strut::{mounted_spring_length, strut_with_coil};
 pub use supply::{FUSE, Rail, SWITCH, Supplies, healthy_rail_mv};
 
 use lizard_contact::{Ground, Joints};
@@ -80,7 +80,7 @@ impl Measures {
         let (limits, pace) = limits::read(root)?;
         let parts = Parts::read(root)?;
         let lizard = Lizard { links, leg };
-        let feet = hips.feet(&lizard, &parts, mount)?;
+        let feet = hips.place_feet(&lizard, &parts, mount)?;
         let neutral = servos.map(|servo| servo.neutral);
         let legs = std::array::from_fn(|servo| {
             LegPlan::new(servo, neutral[servo], &lizard, &parts, &feet)
@@ -118,7 +118,7 @@ impl Measures {
             (End::Tail, ["links.l7", "links.l8"]),
         ] {
             let bars = self.lizard.end(end);
-            let per_mm = scale::steps_per_mm(scale::of_loop(&bars));
+            let per_mm = scale::steps_per_mm(scale::five_bar_scale(&bars));
             let smallest = f64::from(MIN_COUPLER) / per_mm;
             for (key, value) in names
                 .into_iter()
@@ -158,7 +158,7 @@ impl Measures {
         match self.lizard.solve(&self.neutral().into()) {
             Err(infeasible) => fault(no_loop(infeasible.part), infeasible.to_string()),
             Ok(solution) => match self.limits.violations(&solution).next() {
-                Some(violation) => fault(consequence(violation.what), violation.to_string()),
+                Some(violation) => fault(consequence(violation.check), violation.to_string()),
                 None => Ok(()),
             },
         }
@@ -173,7 +173,7 @@ fn read_links(root: &Section) -> Checked<Links> {
         *length = section.number(name, LENGTHS.0, LENGTHS.1, "mm")?;
     }
     let l = Links::from(lengths);
-    equal(
+    require_equal(
         "links.l15",
         l.l15,
         "links.l10",
@@ -196,8 +196,8 @@ fn read_leg(root: &Section) -> Checked<(Leg, Hips, f64)> {
         "drive",
     ];
     let section = root.open("leg")?;
-    section.moved(&["spring", "preload"], SPRING)?;
-    let section = section.only(&keys)?;
+    section.refuse_moved_keys(&["spring", "preload"], SPRING)?;
+    let section = section.require_known_keys(&keys)?;
     let bar = |name| section.number(name, LENGTHS.0, LENGTHS.1, "mm");
     let leg = Leg {
         ground: bar("ground")?,
@@ -206,14 +206,14 @@ fn read_leg(root: &Section) -> Checked<(Leg, Hips, f64)> {
         follower: bar("follower")?,
     };
     let parallelogram = "a leg is a parallelogram, so its opposite links are equally long";
-    equal(
+    require_equal(
         "leg.coupler",
         leg.coupler,
         "leg.ground",
         leg.ground,
         parallelogram,
     )?;
-    equal(
+    require_equal(
         "leg.follower",
         leg.follower,
         "leg.crank",
@@ -226,7 +226,13 @@ fn read_leg(root: &Section) -> Checked<(Leg, Hips, f64)> {
 }
 
 /// Refuses the `value` of a key that differs from the value of the key `other`.
-fn equal(key: &str, value: f64, other: &str, other_value: f64, reason: &str) -> Checked<()> {
+fn require_equal(
+    key: &str,
+    value: f64,
+    other: &str,
+    other_value: f64,
+    reason: &str,
+) -> Checked<()> {
     if value == other_value {
         return Ok(());
     }

@@ -11,7 +11,7 @@ use crate::file::{Checked, Section, hint};
 use crate::measures::servo::{ARM_SIDE, Servo};
 
 /// N mm per kg cm.
-const N_MM: f64 = 10.0 * GRAVITY;
+const N_MM_PER_KG_CM: f64 = 10.0 * GRAVITY;
 
 /// A type of servo, in the units of its data sheet.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -110,7 +110,7 @@ impl ServoType {
     /// The servo's motor at a supply voltage in V, if `us_per_degree` of the pulse turn the servo by one degree.
     pub fn motor(&self, volts: f64, us_per_degree: f64) -> Motor {
         let motor = Motor {
-            stall: self.stall_kg_cm * N_MM,
+            stall: self.stall_kg_cm * N_MM_PER_KG_CM,
             no_load_speed: 60.0 / self.s_per_60_deg,
             spin_up: self.spin_up_ms / 1000.0,
             full_torque_error: self.full_torque_deg,

@@ -236,8 +236,8 @@ impl Parts {
             return Ok(all);
         }
         let section = root.open("parts")?;
-        section.moved(&["strut"], STRUT)?;
-        let section = section.only(&KEYS)?;
+        section.refuse_moved_keys(&["strut"], STRUT)?;
+        let section = section.require_known_keys(&KEYS)?;
         let mm = |name, default, min, max| section.number_or(name, default, min, max, "mm");
         let list = |name, default: [f64; 2], min, max| match section.has(name) {
             true => section.numbers(name, min, max, "(mm; an angle in deg)"),

@@ -52,7 +52,7 @@ impl Plate {
                 let y = (half.y - Self::ARM).max(0.0);
                 Vector::new((half.x - Self::ARM).copysign(pivot.x), pivot.y.clamp(-y, y))
             };
-            let [driven, idle] = [leg.driven, leg.idle];
+            let [driven, idle] = [leg.crank_pivot, leg.follower_pivot];
             [[driven, idle], [driven, inner(driven)], [idle, inner(idle)]]
         });
         Self {

@@ -17,7 +17,7 @@ pub(crate) fn steps_per_mm(scale: Scale) -> f64 {
 }
 
 /// Finds the finest scale for the five-bar of head or tail.
-pub(crate) fn of_loop(bars: &FiveBar) -> Scale {
+pub(crate) fn five_bar_scale(bars: &FiveBar) -> Scale {
     let all = bars.base + bars.crank_left + bars.crank_right;
     finest(&[
         (all, bars::MAX_STEPS),
@@ -27,7 +27,7 @@ pub(crate) fn of_loop(bars: &FiveBar) -> Scale {
 }
 
 /// Finds the finest scale for a side whose slider may extend by `stroke_max` mm from nominal.
-pub(crate) fn of_side(side: &Slider, stroke_max: f64) -> Scale {
+pub(crate) fn side_scale(side: &Slider, stroke_max: f64) -> Scale {
     let arms = side.front + side.rear + side.offset.abs();
     finest(&[
         (side.base + arms, slider::MAX_STEPS),
@@ -82,7 +82,7 @@ mod tests {
             [base, crank_left, coupler_left, coupler_right, crank_right] in prop::array::uniform5(length()),
         ) {
             let bars = FiveBar { base, crank_left, coupler_left, coupler_right, crank_right };
-            let bits = of_loop(&bars).bits;
+            let bits = five_bar_scale(&bars).bits;
             prop_assert!(loop_fits(&bars, bits));
             prop_assert!(bits == 14 || !loop_fits(&bars, bits + 1), "{bits}");
         }
@@ -93,7 +93,7 @@ mod tests {
             offset in -500.0..500.0f64,
         ) {
             let side = Slider { offset, base, front, rear, nominal };
-            let bits = of_side(&side, stroke).bits;
+            let bits = side_scale(&side, stroke).bits;
             prop_assert!(side_fits(&side, stroke, bits));
             prop_assert!(bits == 14 || !side_fits(&side, stroke, bits + 1), "{bits}");
         }
@@ -110,8 +110,8 @@ mod tests {
             coupler_right: 60.0,
             crank_right: 40.0,
         };
-        assert_eq!(of_loop(&bars(46.99)).bits, 8);
-        assert_eq!(of_loop(&bars(47.0)).bits, 7);
+        assert_eq!(five_bar_scale(&bars(46.99)).bits, 8);
+        assert_eq!(five_bar_scale(&bars(47.0)).bits, 7);
     }
 
     #[test]
@@ -123,7 +123,7 @@ mod tests {
             coupler_right: mm,
             crank_right: mm,
         };
-        assert_eq!(of_loop(&bars(1.0)).bits, 13);
-        assert_eq!(of_loop(&bars(LONGEST_BAR)).bits, 3);
+        assert_eq!(five_bar_scale(&bars(1.0)).bits, 13);
+        assert_eq!(five_bar_scale(&bars(LONGEST_BAR)).bits, 3);
     }
 }

@@ -3,7 +3,7 @@
 pub use lizard_contact::FORWARD;
 use lizard_kinematics::{Side, wrap};
 
-use crate::file::{Checked, Section, short};
+use crate::file::{Checked, Section, format_number};
 use crate::units::STEPS_PER_DEGREE;
 
 /// The servos' names.
@@ -85,7 +85,7 @@ pub struct SpeedLimits {
 
 /// Converts the name of a pin on the board to the pin's Arduino number: D2 to D12, A0 to A5
 /// (14 to 19); `None` for any other name.
-pub(crate) fn pin(name: &str) -> Option<u8> {
+pub(crate) fn parse_pin(name: &str) -> Option<u8> {
     let (letter, number) = name.split_at_checked(1)?;
     // "+5" and "05" would parse, but are not names of pins.
     let number: u8 = number
@@ -102,7 +102,7 @@ pub(crate) fn pin(name: &str) -> Option<u8> {
 /// Reads the key `pin`, whose value must be a name that the function [`pin`] accepts.
 pub(crate) fn read_pin(section: &Section) -> Checked<u8> {
     let text = section.text("pin")?;
-    pin(text).ok_or_else(|| {
+    parse_pin(text).ok_or_else(|| {
         let message = format!(
             "is \"{text}\"; it must be one of D2 to D12 or A0 to A5 (D0 and D1 are the serial line, D13 is the LED)"
         );
@@ -162,7 +162,7 @@ fn read_servo(section: &Section) -> Checked<Servo> {
     if !(GAINS.0..=GAINS.1).contains(&us_per_degree.abs()) {
         let message = format!(
             "is {}; it must be within 1 to 22 us, or -22 to -1 where a longer pulse turns the horn clockwise",
-            short(us_per_degree)
+            format_number(us_per_degree)
         );
         return Err(section.fault("us_per_degree", message));
     }

@@ -14,7 +14,12 @@ pub(crate) fn mounted_spring_length(legs: &[LegPlan; 4], parts: &Parts) -> f64 {
 }
 
 /// The strut of a robot with this spring in it. The servos' neutral angles are in deg, chassis frame.
-pub(crate) fn of_coil(legs: &[LegPlan; 4], neutral: [f64; 4], parts: &Parts, coil: &Coil) -> Strut {
+pub(crate) fn strut_with_coil(
+    legs: &[LegPlan; 4],
+    neutral: [f64; 4],
+    parts: &Parts,
+    coil: &Coil,
+) -> Strut {
     let [radius, angle] = parts.anchor;
     let arm = |leg: usize| neutral[leg] - ARM_SIDE[leg] * angle - legs[leg].strut.angle();
     Strut {

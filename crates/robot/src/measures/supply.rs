@@ -4,7 +4,7 @@
 use lizard_core::numbers::supplies::{Supplies as CoreSupplies, Thresholds};
 
 use crate::file::{Checked, Section};
-use crate::measures::servo::{NAMES, Servo, pin};
+use crate::measures::servo::{NAMES, Servo, parse_pin};
 
 /// The nominal voltage reference of an ATmega328P, V: data sheet, section 29.8.
 const REFERENCE: f64 = 1.1;
@@ -72,7 +72,7 @@ impl Rail {
     /// Sets the first threshold, if robot.toml leaves it to the servos: the voltage below which the hardest gait
     /// would use more than `share` of the servos' torque-speed line. `line` is the share that this gait uses at
     /// `volts`.
-    pub(crate) fn slow_down(&mut self, line: f64, share: f64, volts: f64) {
+    pub(crate) fn set_slow_threshold(&mut self, line: f64, share: f64, volts: f64) {
         let [slow, stop, _] = &mut self.thresholds;
         let min = *stop + MIN_THRESHOLD_GAP;
         // Rounded to hundredths. The threshold stays below the supply itself, or the robot would always be slow.
@@ -155,7 +155,7 @@ fn read_rail(supply: &Section, servos: &[Servo; 4]) -> Checked<Option<Rail>> {
     let section = supply.section("rail", &["pin", "ratio", "slow", "stop", "rest"])?;
     let text = section.text("pin")?;
     let refused = |reason: String| section.fault("pin", format!("is \"{text}\"{reason}"));
-    let pin = pin(text)
+    let pin = parse_pin(text)
         .filter(|pin| ANALOGUE.contains(pin))
         .ok_or_else(|| refused("; it must be one of A0 to A5".to_string()))?;
     if let Some(servo) = servos.iter().position(|servo| servo.pin == pin) {

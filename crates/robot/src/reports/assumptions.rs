@@ -49,7 +49,7 @@ impl Inputs {
     fn walk(&self, robot: &Robot, gait: &CheckedGait, pace: f64) -> Travel {
         let Motors { each, mut joints } = robot.motors_of(&self.servo, self.servo.volts);
         [joints.drag, joints.slider] = self.joints;
-        gait.driven_scaled(&self.ground, &Motors { each, joints }, pace, self.scale)
+        gait.simulate_scaled_cycle(&self.ground, &Motors { each, joints }, pace, self.scale)
     }
 }
 
@@ -203,7 +203,7 @@ impl Assumptions {
             }
         };
         let mut rows: Vec<Row> = ALL.iter().map(row).collect();
-        rows.sort_by(|a, b| b.most().total_cmp(&a.most()));
+        rows.sort_by(|a, b| b.max_change().total_cmp(&a.max_change()));
         Self {
             gaits: gaits
                 .iter()
@@ -315,7 +315,7 @@ fn principal_component(movement: &Travel) -> fn(&Travel) -> f64 {
 
 impl Row {
     /// The largest change of a movement, percent.
-    fn most(&self) -> f64 {
+    fn max_change(&self) -> f64 {
         let all = self.changes.as_flattened().iter();
         all.map(|change| change.abs()).fold(0.0, f64::max)
     }
@@ -340,7 +340,7 @@ impl fmt::Display for Assumptions {
         let (count, rest): (Vec<&Row>, Vec<&Row>) = self
             .rows
             .iter()
-            .partition(|row| row.most() >= MIN_CHANGE_PERCENT);
+            .partition(|row| row.max_change() >= MIN_CHANGE_PERCENT);
         for row in count {
             let [least, most] = row.range;
             let range = format!("{least} to {most} {}", row.unit);

@@ -96,7 +96,7 @@ impl Report {
                 movement,
                 spring_cost: SpringCost::of(gait, ground),
                 line: Effort::of(gait, ground, &motors).line_share(1.0, 1.0),
-                driven: movement.keep_known(gait.driven(ground, &motors, 1.0)),
+                driven: movement.keep_known(gait.simulate_driven_cycle(ground, &motors, 1.0)),
             }
         };
         let firmware = robot.core();
@@ -150,7 +150,7 @@ impl Report {
                     movement_or_driven.left,
                     movement_or_driven.turn,
                 ]
-                .map(|part| known(part, 1));
+                .map(|part| format_part(part, 1));
                 write!(f, " {forward:>7} {left:>6} {turn:>7}")?;
             }
             writeln!(f)?;
@@ -212,11 +212,11 @@ impl fmt::Display for Report {
             write!(
                 f,
                 "{:>7} {:>6} {:>7}  {line:>5.2} {:>6} {:>6}",
-                known(movement.forward, 2),
-                known(movement.left, 2),
-                known(movement.turn, 2),
-                known(driven.forward, 1),
-                known(driven.turn, 1)
+                format_part(movement.forward, 2),
+                format_part(movement.left, 2),
+                format_part(movement.turn, 2),
+                format_part(driven.forward, 1),
+                format_part(driven.turn, 1)
             )?;
             if let Some(SpringCost { lag, share, .. }) = spring_cost {
                 let share = share.map_or("-".to_string(), |share| format!("{:.0}", 100.0 * share));
@@ -244,7 +244,7 @@ impl fmt::Display for Report {
             )?;
         }
         for row in self.rows.iter().filter(|row| row.line >= HIGH_LINE_SHARE) {
-            write!(f, "\n{}", tight(&row.name, row.line))?;
+            write!(f, "\n{}", reserve_warning(&row.name, row.line))?;
         }
         if self.searches_long {
             write!(f, "\n{SEARCHES_LONG}")?;
@@ -254,7 +254,7 @@ impl fmt::Display for Report {
 }
 
 /// The warning for a gait that leaves its servos little reserve, or no reserve.
-fn tight(name: &str, line: f64) -> String {
+fn reserve_warning(name: &str, line: f64) -> String {
     let meaning = match line < 1.0 {
         true => "little is left for play, a cold gear or a long wire",
         false => "above 1 a servo falls behind its pulses",
@@ -270,7 +270,7 @@ pub(crate) fn widest<'a>(names: impl Iterator<Item = &'a str>) -> usize {
 }
 
 /// Formats a part of a prediction with its sign; a dash if it is undecided.
-pub(crate) fn known(part: Option<f64>, decimals: usize) -> String {
+pub(crate) fn format_part(part: Option<f64>, decimals: usize) -> String {
     match part {
         Some(value) => format!("{:+.decimals$}", tidy(value, decimals as i32)),
         None => "-".to_string(),
@@ -354,9 +354,9 @@ mod tests {
     fn nothing_is_shown_as_minus_zero() {
         assert_eq!(
             [
-                known(Some(-0.004), 2),
-                known(Some(-0.006), 2),
-                known(None, 2)
+                format_part(Some(-0.004), 2),
+                format_part(Some(-0.006), 2),
+                format_part(None, 2)
             ],
             ["+0.00", "-0.01", "-"]
         );

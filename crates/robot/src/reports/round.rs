@@ -4,7 +4,7 @@
 //! here, frame by frame, and the contact model follows its poses.
 
 use lizard_contact::{Prediction, Travel, Walker};
-use lizard_core::virtual_board::Running;
+use lizard_core::virtual_board::RunningRobot;
 
 use crate::gaits::Routine;
 use crate::measures::servo::FORWARD;
@@ -56,15 +56,15 @@ impl Round {
     /// Returns the sweeps of the legs in each frame of one round that starts from standing, deg, positive if the
     /// foot is forward.
     pub fn sweeps(robot: &Robot, routine: &Routine) -> impl Iterator<Item = [f64; 4]> {
-        let mut running = Running::power_on(*robot.without_contacts().firmware());
-        running.run(STANDS);
-        running.say(&format!("{} 1", routine.name().replace('-', " ")));
+        let mut running = RunningRobot::power_on(*robot.without_contacts().firmware());
+        running.run_frames(STANDS);
+        running.send_line(&format!("{} 1", routine.name().replace('-', " ")));
         let mut is_done = false;
         std::iter::from_fn(move || {
             if is_done {
                 return None;
             }
-            is_done = running.run(1).iter().any(|line| line == "# done");
+            is_done = running.run_frames(1).iter().any(|line| line == "# done");
             let pose = running.motion().pose().0;
             Some(std::array::from_fn(|servo| {
                 FORWARD[servo] * f64::from(pose[servo].0) / STEPS_PER_DEGREE

@@ -4,7 +4,7 @@ use std::fmt;
 
 use lizard_contact::{Drive, Feet, Ground, Prediction, Stance};
 
-use crate::reports::report::{UNDECIDED, known, widest};
+use crate::reports::report::{UNDECIDED, format_part, widest};
 use crate::robot::Robot;
 
 /// Excess length of the front left foot in the table of other foot stiffnesses, mm.
@@ -132,7 +132,7 @@ impl fmt::Display for Sensitivity {
 fn cell(movement: &Prediction) -> String {
     let turn = match movement.turn {
         Some(turn) if turn.abs() < 0.05 => String::new(),
-        turn => known(turn, 1),
+        turn => format_part(turn, 1),
     };
-    format!("{:>9}{turn:>6}", known(movement.forward, 1))
+    format!("{:>9}{turn:>6}", format_part(movement.forward, 1))
 }

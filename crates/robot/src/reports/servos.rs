@@ -6,7 +6,7 @@ use lizard_contact::Prediction;
 
 use crate::checks::{CheckedGait, Effort};
 use crate::measures::ServoType;
-use crate::reports::report::{UNDECIDED, known, widest};
+use crate::reports::report::{UNDECIDED, format_part, widest};
 use crate::robot::Robot;
 
 /// Paces of the servo tables, as the command `speed` takes them: percent of a gait's own pace.
@@ -50,7 +50,7 @@ impl ServoTable {
             let known = gait.predict(&ground.rigid());
             let cell = |pace: f64, volts: f64| Cell {
                 line: effort.line_share(pace / 100.0, volts / servo.volts),
-                movement: known.keep_known(gait.driven(
+                movement: known.keep_known(gait.simulate_driven_cycle(
                     ground,
                     &robot.motors_at(volts),
                     pace / 100.0,
@@ -59,7 +59,7 @@ impl ServoTable {
             Row {
                 name: gait.name().to_string(),
                 cells: PACES.map(|pace| volts.map(|volts| cell(pace, volts))),
-                paces: volts.map(|volts| 100.0 * effort.pace(volts / servo.volts)),
+                paces: volts.map(|volts| 100.0 * effort.max_pace(volts / servo.volts)),
             }
         };
         let moving = robot.gaits().iter().filter(|gait| gait.moves());
@@ -129,7 +129,10 @@ impl fmt::Display for ServoTable {
 fn cell(Cell { line, movement }: &Cell) -> String {
     let turn = match movement.turn {
         Some(turn) if turn.abs() < 0.05 => String::new(),
-        turn => known(turn, 1),
+        turn => format_part(turn, 1),
     };
-    format!("{line:>9.2}{:>7}{turn:>6}", known(movement.forward, 1))
+    format!(
+        "{line:>9.2}{:>7}{turn:>6}",
+        format_part(movement.forward, 1)
+    )
 }

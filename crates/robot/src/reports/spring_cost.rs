@@ -25,7 +25,7 @@ impl SpringCost {
     /// Compares a gait on this ground with the same gait on rigid legs. Returns `None` if the drive is rigid, so
     /// that legs do not lag.
     pub fn of(gait: &CheckedGait, ground: &Ground) -> Option<Self> {
-        if !ground.drive.lags() {
+        if !ground.drive.can_lag() {
             return None;
         }
         let walked = gait.simulate_cycle(ground);

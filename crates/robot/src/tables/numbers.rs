@@ -85,7 +85,7 @@ fn servo_hash(pins: &[u8; 4], neutral: &[Angle; 4], calibration: &[Calibration; 
 }
 
 fn five_bar(bars: &kinematics::FiveBar) -> Loop {
-    let scale = scale::of_loop(bars);
+    let scale = scale::five_bar_scale(bars);
     let length = |mm: f64| steps(mm, scale) as i16;
     // The crank tips are farthest apart if both cranks point outward.
     let [base, left, right] = [bars.base, bars.crank_left, bars.crank_right].map(length);
@@ -137,7 +137,7 @@ fn reach(tables: &Tables, travel: &[Calibration; 4]) -> [Reach; 4] {
 
 /// Converts the slider of a side to integers; its stroke is rounded inward.
 fn side(slider: &kinematics::Slider, limits: &kinematics::Limits) -> Slider {
-    let scale = scale::of_side(slider, limits.stroke_max);
+    let scale = scale::side_scale(slider, limits.stroke_max);
     let length = |mm: f64| steps(mm, scale);
     let per_mm = scale::steps_per_mm(scale);
     Slider {

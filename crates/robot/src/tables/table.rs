@@ -9,7 +9,7 @@ use lizard_core::numbers::gaits::{Channel, Gait as TableGait, MAX_WAVES, SAMPLES
 use lizard_core::numbers::units::CYCLE;
 
 use crate::file::{Checked, Fault};
-use crate::gaits::{Gait, Stride, Waveform, canonical};
+use crate::gaits::{Gait, Stride, Waveform, canonicalize};
 use crate::measures::servo::{FORWARD, NAMES};
 use crate::units::{FRAMES_PER_SECOND, ONE_Q14, PHASES, STEPS_PER_DEGREE};
 
@@ -132,7 +132,7 @@ impl WaveformBank {
     /// Finds or adds the waveform of a stride; `forward` is 1 or -1, the direction in which the servo moves its
     /// foot forward. `None` if the stride sweeps half a turn or more.
     fn find(&mut self, stride: &Stride, forward: f64) -> Option<Part> {
-        let (waveform, shift, sign) = canonical(&stride.waveform);
+        let (waveform, shift, sign) = canonicalize(&stride.waveform);
         let samples = samples(&waveform);
         let peak = peak(&samples);
         let amplitude = stride.amplitude * peak * sign * forward;

@@ -1,8 +1,8 @@
 //! Comparison of the tables in docs/gaits.md, docs/limits.md and docs/twin.md with freshly computed tables.
 
 use lizard_robot::{
-    Assumptions, Drive, Effort, Ground, HIGH_LINE_SHARE, Kind, Report, Robot, Sensitivity,
-    ServoTable, Walked,
+    Assumptions, Drive, DriveKind, Effort, Ground, HIGH_LINE_SHARE, Report, Robot, Sensitivity,
+    ServoTable, SimulatedCycle,
 };
 
 use crate::{gait, paper};
@@ -72,11 +72,11 @@ const PULLS: [Option<f64>; 6] = [Some(0.5), Some(1.0), Some(2.0), Some(3.0), Som
 
 /// Makes the cells of a row of the table of slotted struts: one figure of a gait for each spring force. The springs
 /// have the rate of the paper's coil.
-fn slotted(name: &str, figure: fn(Walked) -> f64) -> String {
+fn slotted(name: &str, figure: fn(SimulatedCycle) -> f64) -> String {
     let rate = paper().parts().spring.rate();
     let cells = PULLS.map(|force| {
-        let kind = force.map_or(Kind::Rigid, |force| {
-            Kind::Strut(paper().strut_with(force, rate))
+        let kind = force.map_or(DriveKind::Rigid, |force| {
+            DriveKind::Strut(paper().strut_with(force, rate))
         });
         let ground = Ground {
             drive: Drive { kind, play: 0.0 },

@@ -1,7 +1,7 @@
 //! The drive of a leg: struts that yield in one direction, and play. The expected figures come from a separate
 //! implementation of the same model.
 
-use lizard_robot::{Body, Drive, Ground, Kind, Report, SpringCost, Walker};
+use lizard_robot::{Body, Drive, DriveKind, Ground, Report, SpringCost, Walker};
 
 use crate::{STUDIED, cycle_movement, gait, paper, paper_with};
 
@@ -16,7 +16,7 @@ fn ground_with(drive: Drive) -> Ground {
 /// Returns the ground of a robot on slotted struts, with springs of this force (N) and the rate of the paper's coil.
 fn strut(force: f64) -> Ground {
     ground_with(Drive {
-        kind: Kind::Strut(paper().strut_with(force, 0.395)),
+        kind: DriveKind::Strut(paper().strut_with(force, 0.395)),
         play: 0.0,
     })
 }
@@ -111,7 +111,7 @@ fn a_lever_is_the_arms_part_square_to_the_strut() {
                 (strut.lever(leg, sweep) - slope.abs()).abs() < 1e-4,
                 "{leg} {slope}"
             );
-            let (lag, torque) = strut.end(leg, sweep);
+            let (lag, torque) = strut.slot_end(leg, sweep);
             let lag = lag.copysign(slope);
             assert!(
                 (length(lag) - length(0.0) - strut.slot).abs() < 1e-6,
@@ -144,7 +144,7 @@ fn the_table_of_a_drive_makes_the_ground() {
         coil.strut(),
         Some(&paper().strut_of(&paper().parts().spring))
     );
-    assert!((paper().hung() - 28.5f64.hypot(10.0) - 3.0).abs() < 1e-9);
+    assert!((paper().mounted_spring_length() - 28.5f64.hypot(10.0) - 3.0).abs() < 1e-9);
 }
 
 #[test]
@@ -170,7 +170,7 @@ fn the_pull_that_is_needed_grows_with_mass_and_friction() {
             },
             friction,
             drive: Drive {
-                kind: Kind::Strut(paper().strut_with(pull, 0.4 * pull)),
+                kind: DriveKind::Strut(paper().strut_with(pull, 0.4 * pull)),
                 play: 0.0,
             },
             ..*paper().ground()

@@ -387,9 +387,9 @@ fn stock_simavr_measures_the_supply_too_but_is_never_reset() {
     uno.set_supply_mv(2500.0);
     uno.run_ms(3);
     assert_eq!(results(&uno)[1], 450);
-    assert!(!uno.held_in_reset());
+    assert!(!uno.is_held_in_reset());
     uno.set_supply_mv(1000.0);
     uno.run_ms(1);
-    assert!(!uno.held_in_reset());
+    assert!(!uno.is_held_in_reset());
     assert_eq!(causes(&uno), [ResetCause::PowerOn]);
 }

@@ -20,17 +20,17 @@ fn a_supply_below_the_brown_out_level_holds_the_chip_in_reset() {
     let body = "int main(void) { DDRB = 2; PORTB = 2; for (;;) GPIOR0 = MCUSR; }";
     let mut uno = with(body);
     supply(&mut uno, 2676.0);
-    assert!(!uno.held_in_reset() && uno.is_high(Pin::d(9)));
+    assert!(!uno.is_held_in_reset() && uno.is_high(Pin::d(9)));
     supply(&mut uno, 2674.0);
-    assert!(uno.held_in_reset() && !uno.is_high(Pin::d(9)));
+    assert!(uno.is_held_in_reset() && !uno.is_high(Pin::d(9)));
     uno.set_supply_mv(2724.0);
     uno.take_marks();
     assert_eq!(*uno.run_ms(1), State::Alive);
-    assert!(uno.held_in_reset() && uno.marks().is_empty());
+    assert!(uno.is_held_in_reset() && uno.marks().is_empty());
     assert_eq!(uno.cycle(), 3 * CYCLES_PER_MS, "time passes");
     assert_eq!(uno.asleep_cycles(), 0, "but not asleep");
     supply(&mut uno, 2726.0);
-    assert!(!uno.held_in_reset());
+    assert!(!uno.is_held_in_reset());
     assert_eq!(marks(&uno)[0], 0x05);
     assert_eq!(causes(&uno), [ResetCause::PowerOn, ResetCause::BrownOut]);
 }
@@ -42,9 +42,9 @@ fn a_ramp_resets_at_the_cycle_at_which_it_crosses_the_level() {
     uno.run_cycles(1000);
     uno.ramp_supply_mv(2000.0, 3_000_000);
     uno.run_cycles(2_325_000 - 100);
-    assert!(!uno.held_in_reset());
+    assert!(!uno.is_held_in_reset());
     uno.run_cycles(200);
-    assert!(uno.held_in_reset());
+    assert!(uno.is_held_in_reset());
     uno.run_cycles(700_000);
     uno.ramp_supply_mv(5000.0, 3_000_000);
     let start = uno.cycle();
@@ -90,16 +90,16 @@ fn without_the_fuse_the_chip_runs_down_to_power_on_reset() {
     let mut uno = with("int main(void) { for (;;) GPIOR0 = 1; }");
     uno.set_brown_out_mv(None);
     supply(&mut uno, 1310.0);
-    assert!(!uno.held_in_reset());
+    assert!(!uno.is_held_in_reset());
     supply(&mut uno, 1290.0);
-    assert!(uno.held_in_reset());
+    assert!(uno.is_held_in_reset());
     supply(&mut uno, 1390.0);
-    assert!(uno.held_in_reset());
+    assert!(uno.is_held_in_reset());
     supply(&mut uno, 1410.0);
     assert_eq!(causes(&uno), [ResetCause::PowerOn, ResetCause::PowerOn]);
     uno.set_brown_out_mv(Some(4300.0));
     uno.run_cycles(10);
-    assert!(uno.held_in_reset());
+    assert!(uno.is_held_in_reset());
 }
 
 #[test]
@@ -141,7 +141,7 @@ fn the_watchdog_stands_still_while_the_supply_holds_the_chip() {
     uno.run_ms(20);
     uno.set_supply_mv(2000.0);
     uno.run_ms(100);
-    assert_eq!(uno.resets(), 1);
+    assert_eq!(uno.watchdog_resets(), 1);
 }
 
 #[test]
@@ -151,7 +151,7 @@ fn power_on_into_a_supply_that_is_too_low_waits_for_it() {
     uno.power_cycle();
     uno.take_marks();
     uno.run_ms(1);
-    assert!(uno.held_in_reset() && uno.marks().is_empty());
+    assert!(uno.is_held_in_reset() && uno.marks().is_empty());
     uno.reset();
     uno.run_ms(1);
     assert!(uno.marks().is_empty(), "nor does the RESET pin start it");
@@ -167,7 +167,7 @@ fn a_ramp_reaches_a_firmware_that_sleeps_forever() {
         with("int main(void) { GPIOR0 = MCUSR; SMCR = 1; asm volatile (\"sleep\"); for (;;) {} }");
     uno.ramp_supply_mv(2000.0, CYCLES_PER_MS);
     assert_eq!(*uno.run_ms(2), State::Alive);
-    assert!(uno.held_in_reset());
+    assert!(uno.is_held_in_reset());
     let mut cut = with("int main(void) { SMCR = 1; asm volatile (\"sleep\"); for (;;) {} }");
     cut.cut_power(PowerCut::AtCycle(1000 * CYCLES_PER_US), 0);
     assert_eq!(*cut.run_ms(2), State::Off);

@@ -165,7 +165,7 @@ fn a_starved_watchdog_resets_and_is_counted() {
             for (;;) {}
         }");
     for uno in both_after(70 * CYCLES_PER_MS, &image) {
-        assert_eq!(uno.resets(), 4, "every 16 ms");
+        assert_eq!(uno.watchdog_resets(), 4, "every 16 ms");
     }
 }
 

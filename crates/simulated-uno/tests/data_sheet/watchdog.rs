@@ -247,7 +247,7 @@ fn after_its_reset_the_watchdog_stays_on_at_16_ms_until_wdrf_is_cleared() {
         100,
     );
     assert_eq!(marks(&cleared), [8, 0]);
-    assert_eq!(cleared.resets(), 1);
+    assert_eq!(cleared.watchdog_resets(), 1);
 }
 
 #[test]
@@ -257,7 +257,7 @@ fn the_watchdog_ends_a_sleep_with_interrupts_off() {
     );
     let mut uno = uno(image.clone());
     assert_eq!(*uno.run_ms(40), State::Alive);
-    assert_eq!(uno.resets(), 2);
+    assert_eq!(uno.watchdog_resets(), 2);
     assert!(uno.marks().is_empty());
     let mut stock = Uno::with_image(image, Fidelity::Stock);
     assert_eq!(*stock.run_ms(40), State::Halted);
@@ -271,7 +271,7 @@ fn an_enabled_interrupt_does_not_end_a_sleep_with_interrupts_off() {
         40,
     );
     assert!(uno.marks().is_empty());
-    assert_eq!(uno.resets(), 2);
+    assert_eq!(uno.watchdog_resets(), 2);
 }
 
 #[test]
@@ -304,7 +304,7 @@ fn a_watchdog_reset_comes_at_the_same_cycle_however_the_run_is_cut() {
     assert_eq!(pieces.reset_events(), whole.reset_events());
     let mut exact = uno(image);
     exact.run_until_cycle(watchdog_resets(&whole)[0]);
-    assert_eq!(exact.resets(), 1, "by the last cycle of a run");
+    assert_eq!(exact.watchdog_resets(), 1, "by the last cycle of a run");
     assert_eq!(pieces.marks(), whole.marks());
 }
 
@@ -313,5 +313,5 @@ fn stock_simavr_never_resets_while_the_interrupt_is_enabled() {
     let image = program("int main(void) { set(0x48); for (;;) {} }");
     let mut uno = Uno::with_image(image, Fidelity::Stock);
     uno.run_ms(100);
-    assert_eq!(uno.resets(), 0, "{FIXED}");
+    assert_eq!(uno.watchdog_resets(), 0, "{FIXED}");
 }

@@ -43,7 +43,7 @@ fn run(arguments: &[String]) -> Result<(), String> {
         .collect();
     // A few random robots are unlikely to have all rare features.
     if count >= 10 {
-        has_all(&robots)?;
+        check_features(&robots)?;
     }
     let folder = Path::new(folder);
     let written = |error: std::io::Error| format!("{}: {error}", folder.display());
@@ -58,7 +58,7 @@ fn run(arguments: &[String]) -> Result<(), String> {
 type Has = fn(&Robot) -> bool;
 
 /// Checks that each rare feature occurs in one of the robots. The error names the first missing feature.
-fn has_all(robots: &[(String, Robot)]) -> Result<(), String> {
+fn check_features(robots: &[(String, Robot)]) -> Result<(), String> {
     let of_interest: [(&str, Has); 5] = [
         ("a servo that is reversed", |robot| {
             robot.servos().iter().any(|servo| servo.us_per_degree < 0.0)

@@ -8,7 +8,7 @@ use lizard_core::motion::Activity;
 use lizard_core::numbers::gaits::GaitId;
 use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::robot::Robot;
-use lizard_core::virtual_board::{Eeprom, Running};
+use lizard_core::virtual_board::{Eeprom, RunningRobot};
 use lizard_rules::{Event, Limits, Rule, Time};
 
 use super::{FRAME, Verdict, World, broken};
@@ -42,18 +42,18 @@ pub(super) fn limits(robot: &Robot) -> Limits {
 }
 
 /// Returns a number that is the same for equal states of main.
-fn fingerprint(running: &Running) -> u64 {
-    fingerprint::coarse(&running.main)
+fn fingerprint(running: &RunningRobot) -> u64 {
+    fingerprint::coarse_fingerprint(&running.main)
 }
 
 impl World {
     /// Judges an answer to a line.
-    pub(super) fn answer(&mut self, line: &str, text: &str) -> Verdict {
+    pub(super) fn judge_answer(&mut self, line: &str, text: &str) -> Verdict {
         let effect = effect(line, &self.robot());
         let is_done = text.starts_with("ok ");
         // Main has not seen a late edge yet if its last frame still waits to be played. The
         // edge then stops the robot after the order.
-        let is_late = self.observer.is_unreported() && self.running.board.late > 0;
+        let is_late = self.observer.is_unreported() && self.running.board.late_edges > 0;
         self.order(effect, Some(is_done));
         if is_done && effect == Effect::Calibrates {
             self.observe(Event::Calibrated { is_saved: false });
@@ -128,7 +128,7 @@ impl World {
             };
             let (_, limit) = rest.split_once(" limit ").expect("cal prints it");
             let (limit, _) = limit.split_once(" dir ").expect("it ends there");
-            let answer = later.say(&format!("limit {servo} {limit}"));
+            let answer = later.send_line(&format!("limit {servo} {limit}"));
             if answer.starts_with("err ") {
                 return broken(Rule::Load, answer);
             }
@@ -137,7 +137,7 @@ impl World {
     }
 
     /// Closes or opens a contact. Unless a routine runs, checks that the contact has no effect on the robot.
-    pub(super) fn contact(&mut self, pin: u8, closed: bool) -> Verdict {
+    pub(super) fn set_contact(&mut self, pin: u8, closed: bool) -> Verdict {
         let mut without = self.running.clone();
         let others = self.running.board.closed & !(1 << pin);
         self.running.board.closed = others | u32::from(closed) << pin;
@@ -181,7 +181,7 @@ impl World {
             return Ok(());
         }
         if later.board.started_pulses() != standing || activity != Activity::Gait(GaitId::STAND) {
-            let status = later.say("status");
+            let status = later.send_line("status");
             return broken(Rule::Stands, format!("{answer}, and then {status}"));
         }
         Ok(())
@@ -193,14 +193,14 @@ impl World {
         if later.main.control().activity() != Activity::Stop {
             return broken(
                 Rule::Ends,
-                format!("{answer}, and then {}", later.say("status")),
+                format!("{answer}, and then {}", later.send_line("status")),
             );
         }
         Ok(())
     }
 
     /// Judges the pulses of a frame. `main_ran` is false if main was stalled in it.
-    pub(super) fn pulses(&mut self, main_ran: bool) -> Verdict {
+    pub(super) fn judge_pulses(&mut self, main_ran: bool) -> Verdict {
         self.observer.limits.keeps_memory = !self.running.board.memory.is_worn;
         let widths = self.running.board.started_pulses().0.map(|width| width.0);
         let slew = self.robot().slew().per_frame;
@@ -216,7 +216,7 @@ impl World {
         let is_sent = main_ran && widths.iter().any(|width| *width > 0);
         if is_sent
             && Clearance::of(&robot, motion.pose())
-                .hazard(&robot)
+                .first_hazard(&robot)
                 .is_some()
         {
             return broken(Rule::Guarded, format!("{:?}", motion.pose()));

@@ -2,10 +2,10 @@
 
 use lizard_core::console::command::{effect, parse};
 use lizard_core::step::Step;
-use lizard_core::virtual_board::{Running, is_final};
+use lizard_core::virtual_board::{RunningRobot, is_final};
 use lizard_rules::{Event, Rule, Time};
 
-use super::{FOUND_AFTER, UNREADABLE, Verdict, World, broken};
+use super::{MAX_LINES_TO_FIND_RATE, UNREADABLE, Verdict, World, broken};
 use crate::fingerprint;
 
 impl World {
@@ -44,7 +44,8 @@ impl World {
         self.running.board.send(&UNREADABLE);
         self.observe(Event::Byte);
         let after = self.settled();
-        let fingerprint = |running: &Running| fingerprint::without_line_counters(&running.main);
+        let fingerprint =
+            |running: &RunningRobot| fingerprint::fingerprint_without_line_arrival(&running.main);
         if fingerprint(&after) != fingerprint(&before) {
             return broken(Rule::OtherRate, after.board.transmitter.text);
         }
@@ -55,11 +56,11 @@ impl World {
     pub(super) fn check_rate_is_found(&self) -> Verdict {
         let mut asked = self.running.clone();
         asked.board.transmitter.is_held = false;
-        for _ in 0..FOUND_AFTER {
+        for _ in 0..MAX_LINES_TO_FIND_RATE {
             if asked.is_stopped_by_watchdog() {
                 return Ok(());
             }
-            let line: &[u8] = if asked.board.rate == self.sender {
+            let line: &[u8] = if asked.board.rate == self.sender_rate {
                 b"status\n"
             } else {
                 &UNREADABLE
@@ -72,11 +73,11 @@ impl World {
                 return Ok(());
             }
         }
-        broken(Rule::Found, format!("at {} baud", self.sender.baud()))
+        broken(Rule::Found, format!("at {} baud", self.sender_rate.baud()))
     }
 
     /// Returns a clone of the robot that has printed all its output.
-    fn settled(&self) -> Running {
+    fn settled(&self) -> RunningRobot {
         let mut settled = self.running.clone();
         settled.board.transmitter.text.clear();
         settled.settle();
@@ -85,13 +86,14 @@ impl World {
 
     /// Judges the answer that the robot is about to print, if it answers at once: the robot's
     /// state must already match that answer.
-    fn predict(&mut self, line: &'static str, before: &Running) -> Verdict {
+    fn predict(&mut self, line: &'static str, before: &RunningRobot) -> Verdict {
         let after = self.settled();
         let text = &after.board.transmitter.text;
         let Some(answer) = text.lines().find(|line| is_final(line)) else {
             return Ok(());
         };
-        let fingerprint = |running: &Running| fingerprint::without_line_counters(&running.main);
+        let fingerprint =
+            |running: &RunningRobot| fingerprint::fingerprint_without_line_arrival(&running.main);
         if answer.starts_with("err ")
             && (fingerprint(&after) != fingerprint(before)
                 || after.board.memory.bytes() != before.board.memory.bytes())
@@ -104,7 +106,7 @@ impl World {
         }
         self.judged_answers += 1;
         self.unread = None;
-        self.answer(line, answer)?;
+        self.judge_answer(line, answer)?;
         self.look_ahead()
     }
 
@@ -120,7 +122,7 @@ impl World {
                 if self.judged_answers > 0 && !line.starts_with("ok gait=") {
                     self.judged_answers -= 1;
                 } else if let Some(asked) = self.unread.take() {
-                    self.answer(asked, line)?;
+                    self.judge_answer(asked, line)?;
                 }
             }
         }

@@ -72,13 +72,18 @@ impl Object<'_> {
                     } else {
                         reference.offset as u32
                     };
-                    pieces.calls.push(Call { from, at, to });
+                    pieces.calls.push(Call {
+                        from,
+                        offset: at,
+                        to,
+                    });
                 }
             }
         }
-        let order = pieces.order();
+        let order = pieces.find_order();
         let compiled: Vec<usize> = (0..=others).collect();
-        let saved = 2 * (pieces.far(&compiled) as i64 - pieces.far(&order) as i64);
+        let saved =
+            2 * (pieces.far_call_count(&compiled) as i64 - pieces.far_call_count(&order) as i64);
         if saved <= 0 {
             return 0;
         }

@@ -13,7 +13,7 @@ fn model(drive: &str) -> Model {
 /// Transforms a point from a mount's frame to the chassis frame.
 fn mapped([x, y, cos, sin]: [f64; 4], point: Vector) -> Vector {
     let (at, turn) = (Vector::new(x, y), Vector::new(cos, sin));
-    at + turn * point.x + turn.left() * point.y
+    at + turn * point.x + turn.rotated_left() * point.y
 }
 
 #[test]
@@ -59,7 +59,10 @@ fn without_lag_every_mount_is_where_the_assembly_has_it() {
     let places = model.pose(angles, [0.0; 4]).expect("closes");
     assert_eq!(places.len(), model.mounts.len());
     for (mount, place) in model.mounts.iter().zip(places) {
-        let Placement { at, turn } = model.assembly().place(*mount, &pose);
+        let Placement {
+            origin: at,
+            x_axis: turn,
+        } = model.assembly().place(*mount, &pose);
         let error = [at.x, at.y, turn.x, turn.y].into_iter().zip(place);
         let error = error.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(error < 1e-9, "{mount:?}: {place:?}");
@@ -97,7 +100,7 @@ fn a_printed_solid_is_placed_exactly_into_its_body() {
         for corner in &solids[known.solid] {
             let [x, y, _] = corner.map(f64::from);
             let at = Vector::new(m[0] * x + m[4] * y + m[12], m[1] * x + m[5] * y + m[13]);
-            let shapes = body.prisms.iter().flat_map(|prism| &prism.add);
+            let shapes = body.prisms.iter().flat_map(|prism| &prism.filled_shapes);
             let error = shapes
                 .map(|shape| shape.distance(&lizard_parts::Shape::disc(at, 0.0)))
                 .fold(f64::INFINITY, f64::min);

@@ -28,7 +28,7 @@ use crate::numbers::units::Width;
 use crate::sample::{GAITS, SLOW_PACE, Sample};
 use crate::step::Step;
 use crate::virtual_board::{Eeprom, VirtualBoard, is_final};
-use dialogue::{Dialogue, awake, neutral, pairs, standing, supply, widths};
+use dialogue::{Dialogue, neutral, pairs, supply, wake_odd_robot, wake_robot, widths};
 
 /// The command for the neutral pose of [`Sample::odd`].
 const NEUTRAL: &str = "pose 132.37 47.91 309.64 226.18";
@@ -41,8 +41,8 @@ fn the_banner_names_version_and_robot_once() {
         let banner =
             format!("# lizard {version} robot sample {hash:08x}, send help for the commands");
         let blank = "# calibration: none is saved, robot.toml's is in use".to_string();
-        assert_eq!(dialogue.lines(), [banner, blank]);
-        assert!(dialogue.run(50).is_empty());
+        assert_eq!(dialogue.read_lines(), [banner, blank]);
+        assert!(dialogue.run_frames(50).is_empty());
     }
 }
 
@@ -58,15 +58,18 @@ fn an_accepted_line_is_answered_by_ok_and_the_line_in_lower_case() {
         NEUTRAL,
     ];
     for command in commands.into_iter().chain(GAITS) {
-        assert_eq!(standing().say(command), format!("ok {command}"));
+        assert_eq!(wake_odd_robot().send_line(command), format!("ok {command}"));
         let shouted = format!("  {}\t", command.to_uppercase());
-        assert_eq!(standing().say(&shouted), format!("ok {command}"));
+        assert_eq!(
+            wake_odd_robot().send_line(&shouted),
+            format!("ok {command}")
+        );
     }
 }
 
 #[test]
 fn help_lists_every_gait_and_every_command_and_may_be_asked_twice() {
-    let mut dialogue = standing();
+    let mut dialogue = wake_odd_robot();
     let printed = dialogue.send(b"help\r");
     let gaits = format!("# gaits: {}", GAITS.join("|"));
     let words: Vec<&str> = Word::ALL.iter().map(|word| word.text()).collect();
@@ -99,7 +102,7 @@ fn many_or_long_gait_names_fill_several_lines_of_help_and_none_is_too_long() {
         let names: Vec<String> = crate::numbers::gaits::GaitId::all(robot.gait_count())
             .map(|id| robot.name(id).map(char::from).collect())
             .collect();
-        let printed = awake(robot).send(b"help\r");
+        let printed = wake_robot(robot).send(b"help\r");
         let lines: Vec<&str> = printed
             .iter()
             .filter_map(|line| line.strip_prefix("# gaits: "))
@@ -117,8 +120,8 @@ fn many_or_long_gait_names_fill_several_lines_of_help_and_none_is_too_long() {
 
 /// A robot that the guard has just stopped, and whose output has not been read since.
 fn guarded() -> Dialogue {
-    let mut dialogue = standing();
-    dialogue.say("stray");
+    let mut dialogue = wake_odd_robot();
+    dialogue.send_line("stray");
     for _ in 0..200 {
         dialogue.run_without_reader(1);
         if dialogue.motion().hazard().is_some() {
@@ -131,24 +134,24 @@ fn guarded() -> Dialogue {
 #[test]
 fn the_guards_reason_is_printed_once_and_stays_in_status() {
     let mut dialogue = guarded();
-    let printed = dialogue.lines();
+    let printed = dialogue.read_lines();
     assert_eq!(printed.len(), 1);
     assert!(
         printed[0].starts_with("# held in the last safe pose: "),
         "{printed:?}"
     );
     assert!(printed[0].contains(" margin of ") || printed[0].contains(" slider is at "));
-    assert!(dialogue.run(100).is_empty());
+    assert!(dialogue.run_frames(100).is_empty());
     assert_eq!(dialogue.status("guard"), "held");
     assert_eq!(dialogue.status("fault"), "guard");
-    dialogue.say("stand");
-    dialogue.run(1);
+    dialogue.send_line("stand");
+    dialogue.run_frames(1);
     assert_eq!(dialogue.status("guard"), "clear");
     assert_eq!(dialogue.status("fault"), "none");
-    dialogue.run(100);
-    dialogue.say("stray");
+    dialogue.run_frames(100);
+    dialogue.send_line("stray");
     assert_eq!(
-        dialogue.run(200).len(),
+        dialogue.run_frames(200).len(),
         1,
         "and again, when it happens again"
     );
@@ -159,12 +162,12 @@ fn the_reason_is_still_printed_if_stand_comes_before_it_could_be() {
     let mut dialogue = guarded();
     dialogue.board.send(b"stand\r");
     dialogue.run_without_reader(3);
-    let printed = dialogue.lines();
+    let printed = dialogue.read_lines();
     assert_eq!(printed.len(), 2);
     assert!(printed[0].starts_with("# held in the last safe pose: "));
     assert_eq!(printed[1], "ok stand");
     assert!(!dialogue.has_output());
-    dialogue.run(3);
+    dialogue.run_frames(3);
     assert_eq!(dialogue.status("guard"), "clear");
 }
 
@@ -185,9 +188,9 @@ fn pending_lines_are_written_in_this_order_banner_answer_fault_reason_report() {
     // From here nobody reads. Meanwhile the guard stops the robot, an edge comes late, and a report is due.
     dialogue.run_without_reader(199);
     assert!(dialogue.motion().hazard().is_some());
-    dialogue.board.late = 1;
+    dialogue.board.late_edges = 1;
     dialogue.run_without_reader(1);
-    let rest = dialogue.lines();
+    let rest = dialogue.read_lines();
     let starts = [
         "# lizard ",
         "# calibration: ",
@@ -212,31 +215,31 @@ fn pending_lines_are_written_in_this_order_banner_answer_fault_reason_report() {
 fn a_resting_robot_refuses_to_move_until_it_is_told_to_stand() {
     let unsafe_pose = "pose 95 90 309.64 226.18";
     for line in ["sway", "sway left", "stop", NEUTRAL, unsafe_pose] {
-        let mut dialogue = standing();
-        dialogue.accept("rest");
-        dialogue.refuse(line, "7 servos are resting, send stand first");
+        let mut dialogue = wake_odd_robot();
+        dialogue.expect_accepted("rest");
+        dialogue.expect_refused(line, "7 servos are resting, send stand first");
         for _ in 0..50 {
             assert_eq!(dialogue.frame(), Pulses::default(), "{line}");
         }
         assert_eq!(dialogue.status("gait"), "rest");
         // Commands that move nothing are still obeyed, and errors are still reported.
         for line in ["speed 50", "watch 0", "rest", "help"] {
-            dialogue.accept(line);
+            dialogue.expect_accepted(line);
         }
-        dialogue.refuse("pose 1 2 3 4", "3 A1 reaches 61.37..215.36");
-        dialogue.refuse("dance", "1 ");
-        dialogue.accept("stand");
-        dialogue.run(25);
+        dialogue.expect_refused("pose 1 2 3 4", "3 A1 reaches 61.37..215.36");
+        dialogue.expect_refused("dance", "1 ");
+        dialogue.expect_accepted("stand");
+        dialogue.run_frames(25);
         assert!(dialogue.frame().0.iter().all(|width| *width > Width(0)));
     }
 }
 
 #[test]
 fn travel_is_checked_before_margins_and_a_refusal_names_what_is_wrong() {
-    let mut dialogue = standing();
-    dialogue.refuse("pose 400 1 1 1", "3 A1 reaches 61.37..215.36");
-    dialogue.refuse("pose 132 47 200 226", "3 A3 reaches 235.64..18.64");
-    let refused = dialogue.say("pose 132.37 4 309.64 226.18");
+    let mut dialogue = wake_odd_robot();
+    dialogue.expect_refused("pose 400 1 1 1", "3 A1 reaches 61.37..215.36");
+    dialogue.expect_refused("pose 132 47 200 226", "3 A3 reaches 235.64..18.64");
+    let refused = dialogue.send_line("pose 132.37 4 309.64 226.18");
     assert!(
         refused.starts_with("err 4 ") || refused.starts_with("err 5 "),
         "{refused}"
@@ -246,11 +249,11 @@ fn travel_is_checked_before_margins_and_a_refusal_names_what_is_wrong() {
 
 #[test]
 fn a_pose_that_is_accepted_is_reached_and_told_to_the_hundredth() {
-    let mut dialogue = standing();
+    let mut dialogue = wake_odd_robot();
     for pose in ["130.00 50.00 311.00 224.50", "136.37 45.01 306.05 229.99"] {
         let line = format!("pose {pose}");
-        dialogue.accept(&line);
-        dialogue.run(120);
+        dialogue.expect_accepted(&line);
+        dialogue.run_frames(120);
         assert_eq!(dialogue.status("pose"), pose.replace(' ', ","));
     }
 }

@@ -44,12 +44,12 @@ const BIT_MIDDLE: [f64; 2] = [0.5, 0.625];
 
 /// A state machine of text: the bytes that may follow each state, and the states in which a command may end.
 #[derive(Default)]
-struct Text {
-    next: Vec<BTreeMap<u8, usize>>,
-    ends: BTreeSet<usize>,
+struct LineAutomaton {
+    transitions: Vec<BTreeMap<u8, usize>>,
+    accepting_states: BTreeSet<usize>,
 }
 
-impl Text {
+impl LineAutomaton {
     const START: usize = 0;
 
     fn new() -> Self {
@@ -59,8 +59,8 @@ impl Text {
     }
 
     fn add_state(&mut self) -> usize {
-        self.next.push(BTreeMap::new());
-        self.next.len() - 1
+        self.transitions.push(BTreeMap::new());
+        self.transitions.len() - 1
     }
 
     /// Adds a state, with a transition to it from each of these states for each of these bytes; returns the state.
@@ -71,15 +71,15 @@ impl Text {
     ) -> usize {
         let to = self.add_state();
         for state in from {
-            self.next[*state].extend(bytes.clone().into_iter().map(|byte| (byte, to)));
+            self.transitions[*state].extend(bytes.clone().into_iter().map(|byte| (byte, to)));
         }
         to
     }
 
     /// Adds a word at the start of a line, unless it is there already; returns the state at its end.
-    fn word(&mut self, word: &str) -> usize {
+    fn add_word(&mut self, word: &str) -> usize {
         word.bytes().fold(Self::START, |state, byte| {
-            self.next[state]
+            self.transitions[state]
                 .get(&byte)
                 .copied()
                 .unwrap_or_else(|| self.add_transition(&[state], [byte]))
@@ -99,7 +99,7 @@ impl Text {
 
     /// Adds degrees or hundredths: an optional sign, up to three digits, up to two decimals; returns the states in
     /// which the number may end.
-    fn decimal(&mut self, blank: usize) -> Vec<usize> {
+    fn add_decimal(&mut self, blank: usize) -> Vec<usize> {
         let sign = self.add_transition(&[blank], *b"+-");
         let mut ends = self.digits(&[blank, sign], 3);
         let point = self.add_transition(&ends, *b".");
@@ -108,9 +108,9 @@ impl Text {
     }
 
     /// The state before state `at`: the start if no state precedes it, `None` if several do.
-    fn before(&self, at: usize) -> Option<usize> {
-        let leads = |from: &usize| self.next[*from].values().any(|to| *to == at);
-        let mut before = (0..self.next.len()).filter(leads);
+    fn previous_state(&self, at: usize) -> Option<usize> {
+        let leads = |from: &usize| self.transitions[*from].values().any(|to| *to == at);
+        let mut before = (0..self.transitions.len()).filter(leads);
         let first = before.next().unwrap_or(Self::START);
         before.next().is_none().then_some(first)
     }
@@ -119,18 +119,18 @@ impl Text {
     fn all_commands() -> Self {
         let mut text = Self::new();
         for gait in &*GAITS {
-            let name = text.word(gait);
+            let name = text.add_word(gait);
             let blank = text.add_transition(&[name], *b" ");
             let counts = text.digits(&[blank], 3);
-            text.ends.insert(name);
-            text.ends.extend(counts);
+            text.accepting_states.insert(name);
+            text.accepting_states.extend(counts);
         }
         for word in Word::ALL {
-            let end = text.word(word.text());
+            let end = text.add_word(word.text());
             if *word == Word::Boot {
                 for argument in GAITS.iter().map(String::as_str).chain(["rest"]) {
-                    let end = text.word(&format!("boot {argument}"));
-                    text.ends.insert(end);
+                    let end = text.add_word(&format!("boot {argument}"));
+                    text.accepting_states.insert(end);
                 }
                 continue;
             }
@@ -147,10 +147,10 @@ impl Text {
                         vec![text.add_transition(&[blank], *b"+-")]
                     }
                     _ if whole => text.digits(&[blank], 5),
-                    _ => text.decimal(blank),
+                    _ => text.add_decimal(blank),
                 };
             }
-            text.ends.extend(ends);
+            text.accepting_states.extend(ends);
         }
         text
     }
@@ -163,19 +163,19 @@ impl Text {
             .map(String::as_str)
             .chain(Word::ALL.iter().map(|word| word.text()))
         {
-            let end = text.word(word);
+            let end = text.add_word(word);
             let blank = text.add_transition(&[end], *b" \t\x0c");
             let any: Vec<u8> = match word {
                 "boot" => (b' '..=b'~').collect(),
                 _ => b"0123456789.+- \t\x0c".to_vec(),
             };
             for byte in any {
-                text.next[blank].entry(byte).or_insert(blank);
+                text.transitions[blank].entry(byte).or_insert(blank);
             }
-            text.ends.extend([end, blank]);
+            text.accepting_states.extend([end, blank]);
         }
         for blank in *b" \t\x0c" {
-            text.next[Self::START].insert(blank, Self::START);
+            text.transitions[Self::START].insert(blank, Self::START);
         }
         text
     }
@@ -183,37 +183,41 @@ impl Text {
 
 /// A receiver's reading of a line so far.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Read {
+enum LineReading {
     /// The beginning of a command, or all of it.
-    Begun(usize),
+    CommandPrefix(usize),
     /// The beginning of a command in this state, followed by this many bytes that continue no command.
-    Other(usize, u8),
+    Mismatch(usize, u8),
     /// A line with a garbled byte.
     Garbled,
     /// A line of unknown content: a byte was deleted whose previous state is ambiguous.
     Deleted,
     /// A command with its line end, in this state; `usize::MAX` if its content is unknown.
-    Ended(usize),
+    CompleteCommand(usize),
 }
 
-impl Read {
+impl LineReading {
     /// The reading after another byte.
-    fn take(self, byte: u8, text: &Text) -> Self {
+    fn after_byte(self, byte: u8, text: &LineAutomaton) -> Self {
         match (byte.to_ascii_lowercase(), self) {
-            (b'\r' | b'\n', Self::Begun(state)) if text.ends.contains(&state) => Self::Ended(state),
-            (b'\r' | b'\n', Self::Deleted) => Self::Ended(usize::MAX),
-            (b'\r' | b'\n', _) => Self::Begun(Text::START),
+            (b'\r' | b'\n', Self::CommandPrefix(state))
+                if text.accepting_states.contains(&state) =>
+            {
+                Self::CompleteCommand(state)
+            }
+            (b'\r' | b'\n', Self::Deleted) => Self::CompleteCommand(usize::MAX),
+            (b'\r' | b'\n', _) => Self::CommandPrefix(LineAutomaton::START),
             (0x80.., _) | (_, Self::Garbled) => Self::Garbled,
             (_, Self::Deleted) => Self::Deleted,
-            (0x08 | 0x7f, Self::Begun(state)) => {
-                text.before(state).map_or(Self::Deleted, Self::Begun)
-            }
-            (0x08 | 0x7f, Self::Other(state, 1)) => Self::Begun(state),
-            (0x08 | 0x7f, Self::Other(state, more)) => Self::Other(state, more - 1),
-            (_, Self::Other(state, more)) => Self::Other(state, more + 1),
-            (byte, Self::Begun(state)) => text.next[state]
+            (0x08 | 0x7f, Self::CommandPrefix(state)) => text
+                .previous_state(state)
+                .map_or(Self::Deleted, Self::CommandPrefix),
+            (0x08 | 0x7f, Self::Mismatch(state, 1)) => Self::CommandPrefix(state),
+            (0x08 | 0x7f, Self::Mismatch(state, more)) => Self::Mismatch(state, more - 1),
+            (_, Self::Mismatch(state, more)) => Self::Mismatch(state, more + 1),
+            (byte, Self::CommandPrefix(state)) => text.transitions[state]
                 .get(&byte)
-                .map_or(Self::Other(state, 1), |to| Self::Begun(*to)),
+                .map_or(Self::Mismatch(state, 1), |to| Self::CommandPrefix(*to)),
             (_, read) => read,
         }
     }
@@ -221,23 +225,23 @@ impl Read {
 
 /// A graph of the bits that a sender may send: the line's level at each, and the bits that may follow it. Bit 0 is
 /// the idle line; each byte of the text has ten bits, a start bit first.
-struct Bits {
-    high: Vec<bool>,
+struct BitGraph {
+    levels: Vec<bool>,
     next: Vec<Vec<usize>>,
     /// The start bits of the bytes with which a text may begin.
-    first: Vec<usize>,
+    first_start_bits: Vec<usize>,
 }
 
-impl Bits {
+impl BitGraph {
     /// The bits of a text sent without pauses, and silence after its end.
-    fn of(text: &Text) -> Self {
+    fn of(text: &LineAutomaton) -> Self {
         let mut bytes: Vec<(usize, u8, Option<usize>)> = Vec::new();
-        for (state, next) in text.next.iter().enumerate() {
+        for (state, next) in text.transitions.iter().enumerate() {
             bytes.extend(next.iter().map(|(byte, to)| (state, *byte, Some(*to))));
         }
         // CR, LF, or both.
-        let return_sent = text.next.len();
-        for end in &text.ends {
+        let return_sent = text.transitions.len();
+        for end in &text.accepting_states {
             bytes.extend([
                 (*end, b'\n', None),
                 (*end, b'\r', None),
@@ -246,9 +250,9 @@ impl Bits {
         }
         bytes.push((return_sent, b'\n', None));
         let mut bits = Self {
-            high: vec![true],
+            levels: vec![true],
             next: vec![vec![0]],
-            first: Vec::new(),
+            first_start_bits: Vec::new(),
         };
         let start = |index: usize| 1 + 10 * index;
         let followers = |state: usize| {
@@ -260,21 +264,21 @@ impl Bits {
         };
         for (index, (_, byte, to)) in bytes.iter().enumerate() {
             let line = 1 << 9 | u16::from(*byte) << 1;
-            bits.high.extend((0..10).map(|bit| line >> bit & 1 == 1));
+            bits.levels.extend((0..10).map(|bit| line >> bit & 1 == 1));
             bits.next
                 .extend((1..10).map(|bit| vec![start(index) + bit]));
             bits.next.push(to.map_or(vec![0], followers));
         }
-        bits.first = followers(Text::START);
+        bits.first_start_bits = followers(LineAutomaton::START);
         bits
     }
 
     /// The bits of any 7-bit bytes in any order, with or without pauses.
-    fn any() -> Self {
-        let mut text = Text::new();
-        text.next[0] = (0..0x80).map(|byte| (byte, 0)).collect();
+    fn with_any_bytes() -> Self {
+        let mut text = LineAutomaton::new();
+        text.transitions[0] = (0..0x80).map(|byte| (byte, 0)).collect();
         let mut bits = Self::of(&text);
-        bits.next[0].extend(bits.first.clone());
+        bits.next[0].extend(bits.first_start_bits.clone());
         for index in 0..0x80 {
             bits.next[10 + 10 * index].push(0);
         }
@@ -302,59 +306,59 @@ fn sampled_bits(sender: Rate, receiver: Rate) -> BTreeSet<[usize; 10]> {
 }
 
 /// A receiver's reading, and the bit that the sender sends at that time.
-type ReceiverState = (Read, usize);
+type ReceiverState = (LineReading, usize);
 
 /// Reads a byte from each of these start edges; returns the states after it.
 fn read_byte(
     edges: &BTreeSet<ReceiverState>,
-    bits: &Bits,
-    text: &Text,
+    bits: &BitGraph,
+    text: &LineAutomaton,
     look: [usize; 10],
 ) -> BTreeSet<ReceiverState> {
-    let mut current: BTreeSet<(Read, usize, u16)> =
+    let mut current: BTreeSet<(LineReading, usize, u16)> =
         edges.iter().map(|(read, at)| (*read, *at, 0)).collect();
     let mut time = 0;
     for (bit, at) in look.into_iter().enumerate() {
         while time < at {
             time += 1;
-            let next = |(read, at, line): &(Read, usize, u16)| {
+            let next = |(read, at, line): &(LineReading, usize, u16)| {
                 let (read, line) = (*read, *line);
                 bits.next[*at].iter().map(move |next| (read, *next, line))
             };
             current = current.iter().flat_map(next).collect();
         }
-        let look = |(read, at, line)| (read, at, line | u16::from(bits.high[at]) << bit);
+        let look = |(read, at, line)| (read, at, line | u16::from(bits.levels[at]) << bit);
         current = current
             .into_iter()
             .map(look)
             .filter(|(.., line)| line & 1 == 0)
             .collect();
     }
-    let end = |(read, at, line): (Read, usize, u16)| {
+    let end = |(read, at, line): (LineReading, usize, u16)| {
         // A byte without a stop bit is garbled.
         let byte = if line >> 9 == 1 {
             (line >> 1) as u8
         } else {
             0xff
         };
-        (read.take(byte, text), at)
+        (read.after_byte(byte, text), at)
     };
     current.into_iter().map(end).collect()
 }
 
 /// The start edges that can follow these states.
-fn edges_from(states: BTreeSet<ReceiverState>, bits: &Bits) -> BTreeSet<ReceiverState> {
+fn edges_from(states: BTreeSet<ReceiverState>, bits: &BitGraph) -> BTreeSet<ReceiverState> {
     let (mut visited, mut edges) = (BTreeSet::new(), BTreeSet::new());
-    let mut left: Vec<ReceiverState> = states.into_iter().collect();
-    while let Some((read, at)) = left.pop() {
+    let mut to_visit: Vec<ReceiverState> = states.into_iter().collect();
+    while let Some((read, at)) = to_visit.pop() {
         if !visited.insert((read, at)) {
             continue;
         }
         for next in &bits.next[at] {
-            if bits.high[at] && !bits.high[*next] {
+            if bits.levels[at] && !bits.levels[*next] {
                 edges.insert((read, *next));
             } else {
-                left.push((read, *next));
+                to_visit.push((read, *next));
             }
         }
     }
@@ -363,13 +367,16 @@ fn edges_from(states: BTreeSet<ReceiverState>, bits: &Bits) -> BTreeSet<Receiver
 
 /// The commands that a receiver can read at another rate, over all states that it can reach.
 fn commands_read(sender: Rate, receiver: Rate) -> BTreeSet<usize> {
-    let (bits, text) = (Bits::of(&Text::all_commands()), Text::accepted_lines());
+    let (bits, text) = (
+        BitGraph::of(&LineAutomaton::all_commands()),
+        LineAutomaton::accepted_lines(),
+    );
     let before = [
-        Read::Begun(Text::START),
-        Read::Other(Text::START, 1),
-        Read::Garbled,
+        LineReading::CommandPrefix(LineAutomaton::START),
+        LineReading::Mismatch(LineAutomaton::START, 1),
+        LineReading::Garbled,
     ];
-    let mut to_visit: BTreeSet<ReceiverState> = (bits.first.iter())
+    let mut to_visit: BTreeSet<ReceiverState> = (bits.first_start_bits.iter())
         .flat_map(|state| before.map(|read| (read, *state)))
         .collect();
     let (mut visited, mut commands) = (to_visit.clone(), BTreeSet::new());
@@ -379,7 +386,7 @@ fn commands_read(sender: Rate, receiver: Rate) -> BTreeSet<usize> {
             ends.extend(read_byte(&to_visit, &bits, &text, look));
         }
         ends.retain(|(read, _)| match read {
-            Read::Ended(command) => {
+            LineReading::CompleteCommand(command) => {
                 commands.insert(*command);
                 false
             }
@@ -399,7 +406,7 @@ fn commands_read(sender: Rate, receiver: Rate) -> BTreeSet<usize> {
 
 /// The pairs (sender, receiver) of different rates whose sender is the faster one, or the slower one if `is_faster`
 /// is false.
-fn pairs(is_faster: bool) -> impl Iterator<Item = (Rate, Rate)> {
+fn rate_pairs(is_faster: bool) -> impl Iterator<Item = (Rate, Rate)> {
     let all = Rate::ALL.into_iter();
     let pairs = all.flat_map(|sender| Rate::ALL.map(|receiver| (sender, receiver)));
     pairs.filter(move |(sender, receiver)| {
@@ -409,20 +416,20 @@ fn pairs(is_faster: bool) -> impl Iterator<Item = (Rate, Rate)> {
 
 #[test]
 fn no_line_ends_at_a_receiver_that_is_faster_than_the_sender_of_any_bytes() {
-    let bits = Bits::any();
-    let text = Text::accepted_lines();
-    for (sender, receiver) in pairs(false) {
-        let edges: BTreeSet<ReceiverState> = (0..bits.high.len())
-            .filter(|state| bits.high[*state])
-            .flat_map(|state| bits.next[state].iter().filter(|next| !bits.high[**next]))
-            .map(|state| (Read::Garbled, *state))
+    let bits = BitGraph::with_any_bytes();
+    let text = LineAutomaton::accepted_lines();
+    for (sender, receiver) in rate_pairs(false) {
+        let edges: BTreeSet<ReceiverState> = (0..bits.levels.len())
+            .filter(|state| bits.levels[*state])
+            .flat_map(|state| bits.next[state].iter().filter(|next| !bits.levels[**next]))
+            .map(|state| (LineReading::Garbled, *state))
             .collect();
         assert!(edges.len() > 128);
         for look in sampled_bits(sender, receiver) {
             let read = read_byte(&edges, &bits, &text, look);
             let ends = read
                 .iter()
-                .any(|(read, _)| *read == Read::Begun(Text::START));
+                .any(|(read, _)| *read == LineReading::CommandPrefix(LineAutomaton::START));
             assert!(!ends, "{sender:?} read at {receiver:?}");
         }
     }
@@ -430,11 +437,14 @@ fn no_line_ends_at_a_receiver_that_is_faster_than_the_sender_of_any_bytes() {
 
 #[test]
 fn no_command_that_may_come_first_is_read_at_a_slower_rate() {
-    let mut text = Text::accepted_lines();
+    let mut text = LineAutomaton::accepted_lines();
     let words = Word::ALL.iter().map(|word| word.text());
     let is_short = |word: &&str| word.len() < MIN_COMMAND_BYTES;
-    let short: BTreeSet<usize> = words.filter(is_short).map(|word| text.word(word)).collect();
-    for (sender, receiver) in pairs(true) {
+    let short: BTreeSet<usize> = words
+        .filter(is_short)
+        .map(|word| text.add_word(word))
+        .collect();
+    for (sender, receiver) in rate_pairs(true) {
         let read = commands_read(sender, receiver);
         assert!(
             read.is_subset(&short),
@@ -445,13 +455,13 @@ fn no_command_that_may_come_first_is_read_at_a_slower_rate() {
 
 #[test]
 fn every_command_is_read_at_its_own_rate() {
-    let mut text = Text::accepted_lines();
+    let mut text = LineAutomaton::accepted_lines();
     for rate in Rate::ALL {
         let read = commands_read(rate, rate);
         let words = Word::ALL.iter().map(|word| word.text());
         for word in GAITS.iter().map(String::as_str).chain(words) {
-            let end = text.word(word);
-            let with_arguments = text.next[end][&b' '];
+            let end = text.add_word(word);
+            let with_arguments = text.transitions[end][&b' '];
             let is_read = read.contains(&end) || read.contains(&with_arguments);
             assert!(is_read, "{word} at {rate:?}");
         }

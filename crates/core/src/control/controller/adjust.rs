@@ -16,7 +16,7 @@ impl Control {
         let mut adjustment = settings.servo(servo);
         match setting {
             Setting::Trim(trim) => adjustment.trim = trim,
-            Setting::Direct(direct) => adjustment.set_direct(direct),
+            Setting::Direction(direct) => adjustment.set_direct(direct),
             Setting::Scale(scale) => adjustment.set_scale(scale),
             Setting::Limit(clockwise, counter_clockwise) => {
                 let neutral = self.motion.robot().neutral_of(servo);
@@ -25,12 +25,12 @@ impl Control {
             }
         }
         settings.set_servo(servo, adjustment);
-        self.replace(&settings)
+        self.replace_settings(&settings)
     }
 
     /// Replaces all settings.
     #[inline(never)]
-    pub(super) fn replace(&mut self, settings: &Settings) -> Result<(), Refusal> {
+    pub(super) fn replace_settings(&mut self, settings: &Settings) -> Result<(), Refusal> {
         let mut calibration = *self.motion.calibration();
         for servo in Servo::all() {
             let new_calibration = servo.of_mut(&mut calibration);

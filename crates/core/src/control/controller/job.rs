@@ -8,7 +8,7 @@ use super::Control;
 use crate::control::refusal::Refusal;
 use crate::control::safety::Notice;
 use crate::control::supply::Level;
-use crate::memory::copies::{self, Outcome};
+use crate::memory::copies::{self, SavedState};
 use crate::memory::record::{Memory, Progress, Writing};
 use crate::memory::settings::Settings;
 
@@ -37,7 +37,7 @@ impl Control {
     /// turns out to be a low supply. Meanwhile there is nothing to do before the next frame.
     pub fn waits_for_supply(&self) -> bool {
         let supply = self.safety.supply();
-        let will_know = match supply.measured() {
+        let will_know = match supply.measured_level() {
             None => self.motion.frames() < MEASURING_FRAMES,
             Some(level) => level == Level::Good && !supply.is_steady(),
         };
@@ -67,7 +67,8 @@ impl Control {
             Some(Job::Load) => {
                 let mut saved = Settings::NONE;
                 match copies::read(self.motion.robot(), memory, &mut saved) {
-                    Outcome::Latest | Outcome::OneCopy => match self.replace(&saved) {
+                    SavedState::Latest | SavedState::OneCopy => match self.replace_settings(&saved)
+                    {
                         Err(Refusal::TravelTooNarrow(_)) => Err(Refusal::NothingSaved),
                         outcome => outcome,
                     },

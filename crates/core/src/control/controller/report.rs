@@ -3,7 +3,7 @@
 use super::Control;
 use crate::control::fault::Fault;
 use crate::control::safety::Safety;
-use crate::memory::copies::Outcome;
+use crate::memory::copies::SavedState;
 use crate::memory::restart::Cause;
 use crate::memory::settings::Settings;
 use crate::motion::Motion;
@@ -27,7 +27,7 @@ impl Control {
     }
 
     /// The state of the saved settings at power-on.
-    pub const fn saved_settings(&self) -> Outcome {
+    pub const fn saved_settings(&self) -> SavedState {
         self.saved_settings
     }
 

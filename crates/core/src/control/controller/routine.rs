@@ -67,7 +67,7 @@ impl Control {
                 self.routine.frames_left == 0
             }
         };
-        if self.contact.frame(is_closed) || is_over {
+        if self.contact.count_frame(is_closed) || is_over {
             self.next_step();
         }
     }
@@ -110,9 +110,9 @@ impl Control {
         self.routine.step = number as u8 + 1;
         self.routine.frames_left = if kind == Step::CYCLES { 0 } else { count };
         self.contact = if kind == Step::WAIT {
-            Contact::closing(input)
+            Contact::await_closing(input)
         } else {
-            Contact::closed(input)
+            Contact::await_closed(input)
         };
         match kind {
             Step::REST => self.motion.rest(),

@@ -15,11 +15,11 @@ fn without_boot() -> Safety {
 }
 
 fn frame(safety: &mut Safety, health: &Health) -> Reaction {
-    safety.frame(health, &supplies(), State::Still, 0)
+    safety.check_frame(health, &supplies(), State::Still, 0)
 }
 
 /// The health of a board whose chip has a supply of this many volts and whose rail has 6 V.
-fn at(volts: f64) -> Health {
+fn health_at(volts: f64) -> Health {
     Health {
         supply: Reading {
             reference: (1.08 / volts * 1024.0) as u16,
@@ -104,7 +104,7 @@ fn a_byte_a_fault_or_a_low_supply_cancels_boot() {
     assert!(!boots(|safety| safety.record_fault(Fault::Late)));
     assert!(!boots(|safety| {
         for _ in 0..6 {
-            frame(safety, &at(4.2));
+            frame(safety, &health_at(4.2));
         }
         safety.clear_fault();
     }));
@@ -118,7 +118,8 @@ fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says_and_no_sooner()
         for _ in 0..10 {
             safety.note_command();
             let mut frames = 0;
-            while safety.frame(&HEALTHY, &supplies, State::Walking, deadman) == Reaction::None {
+            while safety.check_frame(&HEALTHY, &supplies, State::Walking, deadman) == Reaction::None
+            {
                 frames += 1;
             }
             // If the command came just before the first frame, these are the times since it, ms: in the last frame,
@@ -144,7 +145,7 @@ fn without_deadman_or_gait_silence_is_no_fault() {
             (State::Still, 20),
             (State::Resting, 20),
         ] {
-            let reaction = safety.frame(&HEALTHY, &supplies, state, deadman);
+            let reaction = safety.check_frame(&HEALTHY, &supplies, state, deadman);
             assert_eq!(reaction, Reaction::None);
         }
     }
@@ -156,7 +157,7 @@ fn boot_begins_a_gait_that_no_line_ends_before_deadman_has_passed() {
     let mut state = State::Still;
     let mut booted = 0;
     for number in 1..400 {
-        match safety.frame(&HEALTHY, &supplies(), state, 1000) {
+        match safety.check_frame(&HEALTHY, &supplies(), state, 1000) {
             Reaction::Boot => (state, booted) = (State::Walking, number),
             Reaction::None => {}
             other => {
@@ -173,7 +174,7 @@ fn boot_begins_a_gait_that_no_line_ends_before_deadman_has_passed() {
 fn a_falling_supply_stops_then_ends_the_pulses_and_forbids_writing_first() {
     let mut safety = without_boot();
     let mut run = |volts| {
-        let orders = [(); 6].map(|()| frame(&mut safety, &at(volts)));
+        let orders = [(); 6].map(|()| frame(&mut safety, &health_at(volts)));
         (
             orders[5],
             safety.fault(),
@@ -192,7 +193,10 @@ fn a_falling_supply_stops_then_ends_the_pulses_and_forbids_writing_first() {
 fn each_late_edge_stops_the_robot_and_is_reported() {
     let mut safety = without_boot();
     for late in [1, 2, 7, 65_535] {
-        let health = Health { late, ..HEALTHY };
+        let health = Health {
+            late_edges: late,
+            ..HEALTHY
+        };
         assert_eq!(frame(&mut safety, &health), Reaction::Freeze);
         assert_eq!(safety.fault(), Some(Fault::Late));
         assert_eq!(notices(&mut safety), [Notice::Fault]);
@@ -221,9 +225,12 @@ fn a_stack_in_the_data_stops_and_goes_on_doing_so_after_every_motion() {
 fn of_two_reactions_at_once_the_stronger_one_counts() {
     let mut safety = without_boot();
     for _ in 0..5 {
-        frame(&mut safety, &at(4.0));
+        frame(&mut safety, &health_at(4.0));
     }
-    let health = Health { late: 1, ..at(4.0) };
+    let health = Health {
+        late_edges: 1,
+        ..health_at(4.0)
+    };
     assert_eq!(frame(&mut safety, &health), Reaction::EndPulses);
 }
 

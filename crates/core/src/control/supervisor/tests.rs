@@ -85,7 +85,10 @@ fn the_docs_print_the_table_of_events() {
 fn the_docs_print_the_table_of_restarts() {
     let mut rows = Vec::new();
     for cause in Cause::ALL {
-        for (brown_outs, often) in [(0, "once, twice"), (BROWN_OUTS, "three times in a row")] {
+        for (brown_outs, often) in [
+            (0, "once, twice"),
+            (BROWN_OUTS_TO_REST, "three times in a row"),
+        ] {
             let action = |before| first_action(cause, brown_outs, before);
             if brown_outs > 0
                 && ServosBefore::ALL.map(action)
@@ -96,7 +99,7 @@ fn the_docs_print_the_table_of_restarts() {
             let depends = matches!(cause, Cause::External | Cause::BrownOut);
             let cells = ServosBefore::ALL.map(|before| match action(before).0 {
                 FirstAction::Wake => "wakes, stands",
-                FirstAction::TakeOver => "wakes where it was, stands",
+                FirstAction::WakeInPlace => "wakes where it was, stands",
                 FirstAction::Hold => "held",
                 FirstAction::Rest => "rests",
             });
@@ -149,15 +152,15 @@ fn the_reaction_never_relaxes_as_the_supply_sinks() {
 #[test]
 fn servos_wake_only_if_nothing_held_them_and_are_taken_over_only_if_held() {
     for cause in Cause::ALL {
-        for brown_outs in 0..=BROWN_OUTS {
+        for brown_outs in 0..=BROWN_OUTS_TO_REST {
             for before in ServosBefore::ALL {
                 let case = format!("{cause:?}, {brown_outs} brown-outs, {before:?}");
                 let (begins, fault) = first_action(cause, brown_outs, before);
-                let nothing_known = before == ServosBefore::Nothing && fault.is_none();
+                let nothing_known = before == ServosBefore::Unknown && fault.is_none();
                 let wakes = cause == Cause::Power || nothing_known;
                 match begins {
                     FirstAction::Wake => assert!(wakes, "must not wake: {case}"),
-                    FirstAction::TakeOver | FirstAction::Hold => {
+                    FirstAction::WakeInPlace | FirstAction::Hold => {
                         assert_eq!(before, ServosBefore::Held, "nothing to take over: {case}");
                         assert!(!wakes, "must wake: {case}");
                     }

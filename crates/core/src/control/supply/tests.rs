@@ -33,12 +33,16 @@ fn reading(volts: f64, rail: f64) -> Reading {
 
 /// Measures a board without a measured rail until its level changes; returns the number of frames, 0 if it has not
 /// changed after 200, and the level.
-fn until(supply: &mut Supply, volts: f64) -> (usize, Level) {
-    until_change(supply, reading(volts, 0.0), &SUPPLIES)
+fn measure_board_until_change(supply: &mut Supply, volts: f64) -> (usize, Level) {
+    measure_until_change(supply, reading(volts, 0.0), &SUPPLIES)
 }
 
 /// Measures until the level changes; returns the number of frames, 0 if it has not changed after 200, and the level.
-fn until_change(supply: &mut Supply, reading: Reading, supplies: &Supplies) -> (usize, Level) {
+fn measure_until_change(
+    supply: &mut Supply,
+    reading: Reading,
+    supplies: &Supplies,
+) -> (usize, Level) {
     for frame in 1..=200 {
         if supply.measure(reading, supplies) {
             return (frame, supply.level());
@@ -83,16 +87,16 @@ proptest! {
 #[test]
 fn a_falling_supply_reaches_each_level_after_six_frames() {
     let mut supply = Supply::default();
-    assert_eq!(until(&mut supply, 5.0).0, 0);
+    assert_eq!(measure_board_until_change(&mut supply, 5.0).0, 0);
     for (volts, level) in [
         (4.45, Level::Slow),
         (4.25, Level::Stop),
         (4.05, Level::Rest),
     ] {
-        assert_eq!(until(&mut supply, volts), (6, level));
+        assert_eq!(measure_board_until_change(&mut supply, volts), (6, level));
     }
     let mut supply = Supply::default();
-    let change = until(&mut supply, 3.9);
+    let change = measure_board_until_change(&mut supply, 3.9);
     assert_eq!(change, (6, Level::Rest), "all at once, if it falls at once");
 }
 
@@ -118,7 +122,7 @@ fn one_reading_decides_nothing_and_six_frames_do() {
 fn one_reading_does_not_recover_a_supply_either() {
     for odd in 0..50 {
         let mut supply = Supply::default();
-        until(&mut supply, 4.2);
+        measure_board_until_change(&mut supply, 4.2);
         for frame in 0..50 {
             let volts = if frame == odd { 4.5 } else { 5.0 };
             supply.measure(reading(volts, 0.0), &SUPPLIES);
@@ -141,14 +145,14 @@ fn a_short_dip_changes_nothing() {
 #[test]
 fn a_supply_is_good_again_a_second_after_it_has_risen_well_above_the_threshold() {
     let mut supply = Supply::default();
-    until(&mut supply, 4.2);
+    measure_board_until_change(&mut supply, 4.2);
     assert_eq!(supply.level(), Level::Stop);
     // Between the threshold and 0.15 V above it, the level stays as it is.
-    assert_eq!(until(&mut supply, 4.40).0, 0);
-    let slow = until(&mut supply, 4.5);
+    assert_eq!(measure_board_until_change(&mut supply, 4.40).0, 0);
+    let slow = measure_board_until_change(&mut supply, 4.5);
     assert_eq!(slow, (50, Level::Slow));
-    assert_eq!(until(&mut supply, 4.6).0, 0);
-    let good = until(&mut supply, 4.7);
+    assert_eq!(measure_board_until_change(&mut supply, 4.6).0, 0);
+    let good = measure_board_until_change(&mut supply, 4.7);
     assert_eq!(good, (50, Level::Good));
 }
 
@@ -175,9 +179,9 @@ fn the_worse_of_two_supplies_counts_and_is_reported() {
         (4.45, 5.0, Level::Rest, 5.0),
     ] {
         let mut supply = Supply::default();
-        until_change(&mut supply, reading(board, rail), &supplies);
+        measure_until_change(&mut supply, reading(board, rail), &supplies);
         assert_eq!(supply.level(), level);
-        let reported = f64::from(supply.worst(&supplies).hundredths()) / 100.0;
+        let reported = f64::from(supply.worst_voltage(&supplies).hundredths()) / 100.0;
         assert!((reported - worst).abs() < 0.05, "{reported} {worst}");
     }
 }
@@ -186,6 +190,6 @@ fn the_worse_of_two_supplies_counts_and_is_reported() {
 fn a_supply_that_is_not_measured_yet_is_not_low() {
     let supplies = WITH_RAIL;
     let mut supply = Supply::default();
-    let (frames, _) = until_change(&mut supply, Reading::default(), &supplies);
+    let (frames, _) = measure_until_change(&mut supply, Reading::default(), &supplies);
     assert_eq!(frames, 0);
 }

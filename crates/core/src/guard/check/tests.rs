@@ -9,9 +9,9 @@ use crate::numbers::section::seal;
 use crate::sample::Sample;
 
 /// A section of the odd robot with changed numbers.
-struct Changed(Vec<u8>);
+struct ChangedSection(Vec<u8>);
 
-impl Changed {
+impl ChangedSection {
     fn new() -> Self {
         Self(Sample::odd().content.section())
     }
@@ -27,7 +27,7 @@ impl Changed {
     }
 
     /// True if the guard accepts the section.
-    fn opens(&self) -> bool {
+    fn is_accepted(&self) -> bool {
         let mut section = self.0.clone();
         seal(&mut section);
         match Robot::open(Region::new(&section)) {
@@ -42,7 +42,7 @@ impl Changed {
 
 /// True if the odd robot's section still opens with this word at that offset.
 fn opens_with(offset: u16, word: u16) -> bool {
-    Changed::new().put(offset, word).opens()
+    ChangedSection::new().put(offset, word).is_accepted()
 }
 
 #[test]
@@ -58,8 +58,8 @@ fn a_pin_is_free_used_once_and_not_the_rails() {
     for rail in [0, 14, 19] {
         for servo in 0..4 {
             for pin in 0..=u8::MAX {
-                let changed = Changed::new().put(offset!(rail), rail);
-                let opens = changed.put_byte(offset!(pins) + servo, pin).opens();
+                let changed = ChangedSection::new().put(offset!(rail), rail);
+                let opens = changed.put_byte(offset!(pins) + servo, pin).is_accepted();
                 let used = others(servo).chain([rail as u8]).any(|other| other == pin);
                 let all_free = others(servo).all(|other| u16::from(other) != rail);
                 let wanted = is_free(pin) && !used && all_free;
@@ -87,7 +87,7 @@ fn a_servo_tolerates_the_pulses_of_its_travel_and_gaits_stay_within_it() {
             calibration.gain = 11_395;
             (calibration.min, calibration.max) = (Sweep(-9_000), Sweep(9_000));
             change(calibration);
-            Changed(content.section()).opens()
+            ChangedSection(content.section()).is_accepted()
         };
         assert!(opens(&|_| {}));
         for smallest in [7_999, 8_000] {
@@ -118,7 +118,7 @@ fn a_servo_tolerates_the_pulses_of_its_travel_and_gaits_stay_within_it() {
             (calibration.min, calibration.max) = (min, max);
             content.reach[servo] = Reach { min, max };
             assert_eq!(
-                Changed(content.section()).opens(),
+                ChangedSection(content.section()).is_accepted(),
                 has_neutral,
                 "{travel:?}"
             );
@@ -135,12 +135,12 @@ fn a_servo_tolerates_the_pulses_of_its_travel_and_gaits_stay_within_it() {
 fn the_guard_accepts_the_neutral_pose() {
     for change in 0..3 {
         let mut content = Sample::odd().content.clone();
-        assert!(Changed(content.section()).opens());
+        assert!(ChangedSection(content.section()).is_accepted());
         match change {
             0 => content.limits.leg.0 = i16::MAX,
             1 => content.limits.type1.0 = i16::MAX,
             _ => content.limits.type2.0 = i16::MAX,
         }
-        assert!(!Changed(content.section()).opens(), "{change}");
+        assert!(!ChangedSection(content.section()).is_accepted(), "{change}");
     }
 }

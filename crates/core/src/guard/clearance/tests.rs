@@ -12,12 +12,12 @@ use super::*;
 use crate::numbers::limits::Limits;
 use crate::numbers::slider::Slider;
 use crate::numbers::units::Sweep;
-use crate::sample::bounds::{self, DIRECTION, Q15};
+use crate::sample::bounds::{self, MAX_DIRECTION_ERROR, Q15};
 use crate::sample::{Measures, Sample, per_mm, sine};
 
 /// Random robots, each with several poses, since a robot takes longer to make than to
 /// test.
-fn posed() -> impl Strategy<Value = (Sample, [Pose; 8])> {
+fn robots_with_poses() -> impl Strategy<Value = (Sample, [Pose; 8])> {
     Sample::random().prop_flat_map(|robot| {
         let poses = [(); 8].map(|()| robot.pose());
         (Just(robot), poses)
@@ -26,7 +26,7 @@ fn posed() -> impl Strategy<Value = (Sample, [Pose; 8])> {
 
 /// The largest errors of the integers at a pose.
 struct Bounds {
-    ends: [bounds::End; 2],
+    ends: [bounds::EndErrors; 2],
     /// Errors of the sliders, mm.
     sliders: [f64; 2],
 }
@@ -36,10 +36,11 @@ impl Bounds {
         let [a1, a2, a3, a4] = robot.degrees(pose);
         let lizard = robot.measures.lizard;
         let end = |index: usize, end, angles| {
-            bounds::End::of(&lizard.end(end), &robot.ends[index], angles)
+            bounds::EndErrors::of(&lizard.end(end), &robot.ends[index], angles)
         };
-        let side =
-            |index: usize, side| bounds::slider(&lizard.side(side), &robot.content.sides[index]);
+        let side = |index: usize, side| {
+            bounds::slider_error(&lizard.side(side), &robot.content.sides[index])
+        };
         Self {
             ends: [
                 end(0, kinematics::End::Head, [a1, a2]),
@@ -53,14 +54,14 @@ impl Bounds {
         }
     }
 
-    fn max_of_ends(&self, of: impl Fn(&bounds::End) -> f64) -> f64 {
+    fn max_of_ends(&self, of: impl Fn(&bounds::EndErrors) -> f64) -> f64 {
         of(&self.ends[0]).max(of(&self.ends[1]))
     }
 }
 
 /// `Some(true)` if the exact pose keeps all limits by more than the errors, `Some(false)` if it breaks
 /// one by more than the errors, `None` if the errors may change the decision.
-fn is_safe_for_certain(robot: &Sample, pose: &Pose) -> Option<bool> {
+fn decide_safety(robot: &Sample, pose: &Pose) -> Option<bool> {
     let bounds = Bounds::of(robot, pose);
     let Some(solution) = robot.solve(pose) else {
         // A loop that just fails to close may get a margin from the integers, up to the error's bound.
@@ -68,7 +69,7 @@ fn is_safe_for_certain(robot: &Sample, pose: &Pose) -> Option<bool> {
             .then_some(false);
     };
     let truths = [&solution.head, &solution.tail];
-    let crossing = |(truth, bound): (&&kinematics::FiveBarPose, &bounds::End)| {
+    let crossing = |(truth, bound): (&&kinematics::FiveBarPose, &bounds::EndErrors)| {
         truth.gap.x.abs() <= bound.along
     };
     if truths.iter().zip(&bounds.ends).any(crossing) {
@@ -76,18 +77,19 @@ fn is_safe_for_certain(robot: &Sample, pose: &Pose) -> Option<bool> {
     }
     // Limits are rounded up to a step, strokes inwards.
     let step = 1.0 / per_mm(robot.content.sides[0].scale).min(per_mm(robot.content.sides[1].scale));
-    let scaled_by = |sign: f64| kinematics::Limits {
+    let shifted_limits = |sign: f64| kinematics::Limits {
         type2: robot.measures.limits.type2 + sign * (bounds.max_of_ends(|end| end.type2) + Q15),
-        type1: robot.measures.limits.type1 + sign * (bounds.max_of_ends(bounds::End::type1) + Q15),
-        leg: robot.measures.limits.leg + sign * (DIRECTION + Q15),
+        type1: robot.measures.limits.type1
+            + sign * (bounds.max_of_ends(bounds::EndErrors::type1) + Q15),
+        leg: robot.measures.limits.leg + sign * (MAX_DIRECTION_ERROR + Q15),
         stroke_min: robot.measures.limits.stroke_min
             + sign * (bounds.sliders[0].max(bounds.sliders[1]) + step),
         stroke_max: robot.measures.limits.stroke_max
             - sign * (bounds.sliders[0].max(bounds.sliders[1]) + step),
     };
-    if scaled_by(1.0).allow(&solution) {
+    if shifted_limits(1.0).is_safe(&solution) {
         Some(true)
-    } else if !scaled_by(-1.0).allow(&solution) {
+    } else if !shifted_limits(-1.0).is_safe(&solution) {
         Some(false)
     } else {
         None
@@ -124,7 +126,7 @@ fn check_errors(robot: &Sample, pose: &Pose) -> Result<(), TestCaseError> {
             0..2 => bound.type2,
             2 | 5 => bound.type1_left,
             3 | 4 => bound.type1_right,
-            _ => DIRECTION,
+            _ => MAX_DIRECTION_ERROR,
         };
         let error = sine(clearance.margins[index]) - exact;
         prop_assert!(
@@ -149,7 +151,7 @@ proptest! {
 
     #[test]
     fn every_margin_and_slider_uses_its_own_bars_and_servos(
-        (robot, poses) in posed(),
+        (robot, poses) in robots_with_poses(),
     ) {
         for pose in &poses {
             check_errors(&robot, pose)?;
@@ -158,11 +160,11 @@ proptest! {
 
     #[test]
     fn the_decision_is_that_of_floating_point(
-        (robot, poses) in posed(),
+        (robot, poses) in robots_with_poses(),
     ) {
         for pose in &poses {
-            if let Some(safe) = is_safe_for_certain(&robot, pose) {
-                let hazard = Clearance::of(&robot, pose).hazard(&robot);
+            if let Some(safe) = decide_safety(&robot, pose) {
+                let hazard = Clearance::of(&robot, pose).first_hazard(&robot);
                 prop_assert_eq!(hazard.is_none(), safe, "{:?}", hazard);
             }
         }
@@ -174,15 +176,18 @@ fn the_bounds_decide_nearly_every_pose_and_are_narrow_where_a_robot_stands() {
     let mut runner = TestRunner::deterministic();
     let mut decided = 0;
     for _ in 0..250 {
-        let (robot, poses) = posed().new_tree(&mut runner).expect("a pose").current();
+        let (robot, poses) = robots_with_poses()
+            .new_tree(&mut runner)
+            .expect("a pose")
+            .current();
         let known = poses
             .iter()
-            .filter(|pose| is_safe_for_certain(&robot, pose).is_some());
+            .filter(|pose| decide_safety(&robot, pose).is_some());
         decided += known.count();
         let standing = Bounds::of(&robot, &Pose::NEUTRAL);
         let (type2, type1) = (
             standing.max_of_ends(|end| end.type2),
-            standing.max_of_ends(bounds::End::type1),
+            standing.max_of_ends(bounds::EndErrors::type1),
         );
         assert!(type2 < 0.01 && type1 < 0.02, "{type2} {type1}");
         assert!(
@@ -203,15 +208,15 @@ fn a_sample_stands_safely_by_the_integers_and_not_only_in_floating_point() {
     assert!(standing.stands_safely());
     let truth = standing.solve(&Pose::NEUTRAL).expect("it stands");
     measures.limits.stroke_max = truth.left.s.max(truth.right.s) + 1e-9;
-    assert!(measures.limits.allow(&truth));
+    assert!(measures.limits.is_safe(&truth));
     assert!(!Sample::new(measures).stands_safely());
 }
 
 /// A robot and a clearance far from every limit.
-fn clear() -> (Sample, Clearance) {
+fn clear_robot() -> (Sample, Clearance) {
     let robot = Sample::odd();
     let clearance = Clearance::of(&robot, &Pose::NEUTRAL);
-    assert_eq!(clearance.hazard(&robot), None);
+    assert_eq!(clearance.first_hazard(&robot), None);
     (robot, clearance)
 }
 
@@ -234,15 +239,15 @@ fn margins(limits: &Limits) -> [(Margin, Sine); 10] {
 
 #[test]
 fn a_margin_at_its_limit_is_safe_and_one_step_below_it_is_not() {
-    let (robot, clear) = clear();
+    let (robot, clear) = clear_robot();
     for (index, (margin, limit)) in margins(&robot.limits()).into_iter().enumerate() {
         let mut at_limit = clear;
         at_limit.margins[index] = limit;
-        assert_eq!(at_limit.hazard(&robot), None, "{margin:?}");
+        assert_eq!(at_limit.first_hazard(&robot), None, "{margin:?}");
         let value = Sine(limit.0 - 1);
         at_limit.margins[index] = value;
         assert_eq!(
-            at_limit.hazard(&robot),
+            at_limit.first_hazard(&robot),
             Some(Hazard::Margin { margin, value })
         );
     }
@@ -250,42 +255,42 @@ fn a_margin_at_its_limit_is_safe_and_one_step_below_it_is_not() {
 
 #[test]
 fn a_slider_at_either_end_of_its_stroke_is_safe_and_one_step_beyond_is_not() {
-    let (robot, clear) = clear();
+    let (robot, clear) = clear_robot();
     for (index, side) in Side::ALL.into_iter().enumerate() {
         let Slider { min, max, .. } = robot.content.sides[index];
         for (length, allowed) in [(min, true), (min - 1, false), (max, true), (max + 1, false)] {
             let mut at_end = clear;
             at_end.sliders_sq[index] = u32::from(length) * u32::from(length);
             let expected = (!allowed).then_some(Hazard::Stroke { side, length });
-            assert_eq!(at_end.hazard(&robot), expected);
+            assert_eq!(at_end.first_hazard(&robot), expected);
         }
     }
 }
 
 #[test]
 fn the_first_of_several_hazards_is_reported_margins_before_strokes() {
-    let (robot, mut clearance) = clear();
+    let (robot, mut clearance) = clear_robot();
     let mut expected: Vec<Hazard> = Vec::new();
     for (index, side) in Side::ALL.into_iter().enumerate().rev() {
         clearance.sliders_sq[index] = 100;
         expected.push(Hazard::Stroke { side, length: 10 });
-        assert_eq!(clearance.hazard(&robot).as_ref(), expected.last());
+        assert_eq!(clearance.first_hazard(&robot).as_ref(), expected.last());
     }
     for (index, (margin, _)) in margins(&robot.limits()).into_iter().enumerate().rev() {
         let value = Sine(-1);
         clearance.margins[index] = value;
         expected.push(Hazard::Margin { margin, value });
-        assert_eq!(clearance.hazard(&robot).as_ref(), expected.last());
+        assert_eq!(clearance.first_hazard(&robot).as_ref(), expected.last());
     }
 }
 
 #[test]
 fn the_smallest_margin_is_found_at_every_index() {
-    let (_, clear) = clear();
+    let (_, clear) = clear_robot();
     for index in 0..10 {
         let mut clearance = clear;
         clearance.margins[index] = Sine(-20_000 + index as i16);
-        assert_eq!(clearance.smallest(), Sine(-20_000 + index as i16));
+        assert_eq!(clearance.smallest_margin(), Sine(-20_000 + index as i16));
     }
 }
 

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::numbers::units::Angle;
-use crate::sample::{Loop, bounds, degrees, sine};
+use crate::sample::{SampleFiveBar, bounds, degrees, sine};
 
 /// Random bars, mm, with couplers that are long enough for the other bars.
 fn bars() -> impl Strategy<Value = kinematics::FiveBar> {
@@ -32,10 +32,10 @@ fn bars() -> impl Strategy<Value = kinematics::FiveBar> {
                 ..bars
             }
         })
-        .prop_filter("long couplers", |bars| Loop::new(bars).is_some())
+        .prop_filter("long couplers", |bars| SampleFiveBar::new(bars).is_some())
 }
 
-fn margins(bars: &Loop, left: Angle, right: Angle) -> EndMargins {
+fn margins(bars: &SampleFiveBar, left: Angle, right: Angle) -> EndMargins {
     let [left, right] = [left, right].map(Direction::of);
     bars.five_bar().margins(&left, &right)
 }
@@ -50,10 +50,10 @@ proptest! {
         right: u16,
     ) {
         let [left, right] = [left, right].map(Angle);
-        let integers = Loop::new(&bars).expect("fits");
+        let integers = SampleFiveBar::new(&bars).expect("fits");
         let actual = margins(&integers, left, right);
         let angles = [left, right].map(degrees);
-        let bound = bounds::End::of(&bars, &integers, angles);
+        let bound = bounds::EndErrors::of(&bars, &integers, angles);
         let Ok(pose) = bars.forward(angles[0], angles[1]) else {
             // Couplers that just fail to meet may meet once their lengths are rounded to whole steps.
             prop_assert!(sine(actual.type2).abs() <= bound.type2, "{actual:?}");
@@ -119,11 +119,11 @@ fn the_largest_errors_that_random_bars_have_found_are_within_their_bounds() {
             coupler_right,
             crank_right,
         };
-        let integers = Loop::new(&bars).expect("fits");
+        let integers = SampleFiveBar::new(&bars).expect("fits");
         let angles = angles.map(Angle);
         let actual = margins(&integers, angles[0], angles[1]);
         let angles = angles.map(degrees);
-        let bound = bounds::End::of(&bars, &integers, angles);
+        let bound = bounds::EndErrors::of(&bars, &integers, angles);
         let pose = bars.forward(angles[0], angles[1]).expect("closes");
         let error = (sine(actual.type2).abs() - pose.type2).abs();
         // The case still has the error for which it was chosen.
@@ -145,7 +145,7 @@ fn roundings_of_the_type_2_margin_are_even_where_few_bits_are_left() {
         coupler_right: 126.0,
         crank_right: 30.0,
     };
-    let integers = Loop::new(&bars).expect("fits");
+    let integers = SampleFiveBar::new(&bars).expect("fits");
     let (mut sum, mut count) = (0.0, 0.0);
     for left in (13_000..18_000).step_by(7) {
         let [left, right] = [Angle(left), Angle(0x8000 - left)];
@@ -169,7 +169,7 @@ fn couplers_in_line_and_crossed_crank_tips_are_beyond_every_limit() {
         coupler_right: 35.0,
         crank_right: 30.0,
     };
-    let bars = Loop::new(&bars).expect("fits");
+    let bars = SampleFiveBar::new(&bars).expect("fits");
     let at = |left, right| {
         let [left, right] = [left, right].map(Angle::from_centideg);
         margins(&bars, left, right)

@@ -3,7 +3,7 @@
 use std::vec::Vec;
 
 use super::*;
-use crate::memory::record::{ERASED, LENGTH, Progress};
+use crate::memory::record::{ERASED, Progress, RECORD_BYTES};
 use crate::memory::settings::Boot;
 use crate::numbers::gaits::GaitId;
 use crate::numbers::part::Servo;
@@ -46,7 +46,7 @@ fn save_all(settings: &Settings, eeprom: &mut Eeprom) -> Settings {
     saved
 }
 
-fn loaded(robot: &Sample, eeprom: &Eeprom) -> (Settings, Outcome) {
+fn load_settings(robot: &Sample, eeprom: &Eeprom) -> (Settings, SavedState) {
     let mut settings = Settings::of(robot);
     let outcome = load(robot, eeprom, &mut settings);
     (settings, outcome)
@@ -55,7 +55,7 @@ fn loaded(robot: &Sample, eeprom: &Eeprom) -> (Settings, Outcome) {
 /// The settings with save number 0, so that settings of different saves can be compared.
 fn without_turn(settings: &Settings) -> Settings {
     let mut copy = *settings;
-    copy.set_turn(0);
+    copy.set_save_number(0);
     copy
 }
 
@@ -64,14 +64,18 @@ fn the_last_of_a_thousand_saves_is_loaded() {
     let robot = robot();
     let mut eeprom = Eeprom::blank();
     assert_eq!(
-        loaded(&robot, &eeprom),
-        (Settings::of(&robot), Outcome::Blank)
+        load_settings(&robot, &eeprom),
+        (Settings::of(&robot), SavedState::Blank)
     );
     for n in 0..1000 {
         let new = settings(&robot, n % 70);
         let saved = save_all(&new, &mut eeprom);
         assert_eq!(without_turn(&saved), without_turn(&new));
-        assert_eq!(loaded(&robot, &eeprom), (saved, Outcome::Latest), "{n}");
+        assert_eq!(
+            load_settings(&robot, &eeprom),
+            (saved, SavedState::Latest),
+            "{n}"
+        );
     }
 }
 
@@ -87,13 +91,13 @@ fn unchanged_bytes_are_not_written_again() {
     save_all(&settings(&robot, 4), &mut eeprom);
     eeprom.log.clear();
     save_all(&settings(&robot, 5), &mut eeprom);
-    assert!(eeprom.log.len() < usize::from(LENGTH));
+    assert!(eeprom.log.len() < usize::from(RECORD_BYTES));
     assert!(eeprom.log.iter().all(|(_, old, new)| old != new));
 }
 
 /// The values of a byte after power failed during its write: the erase has raised
 /// some of its bits, or the write lowered some of the erased ones.
-fn torn(old: u8, new: u8) -> impl Iterator<Item = u8> {
+fn torn_values(old: u8, new: u8) -> impl Iterator<Item = u8> {
     (0..=255u8).flat_map(move |ones| [old | ones, new | ones])
 }
 
@@ -102,10 +106,10 @@ fn a_power_cut_at_any_byte_leaves_the_old_settings_or_the_new() {
     let robot = robot();
     for saved_before in 0..4 {
         let mut eeprom = Eeprom::blank();
-        let mut old = (Settings::of(&robot), Outcome::Blank);
+        let mut old = (Settings::of(&robot), SavedState::Blank);
         for n in 0..saved_before {
             save_all(&settings(&robot, 10 + n), &mut eeprom);
-            old = loaded(&robot, &eeprom);
+            old = load_settings(&robot, &eeprom);
         }
         let before = *eeprom.bytes();
         eeprom.log.clear();
@@ -117,9 +121,9 @@ fn a_power_cut_at_any_byte_leaves_the_old_settings_or_the_new() {
             for (address, _, byte) in &eeprom.log[..count] {
                 bytes[usize::from(*address)] = *byte;
             }
-            for byte in torn(*from, *to) {
+            for byte in torn_values(*from, *to) {
                 bytes[usize::from(*address)] = byte;
-                let (settings, outcome) = loaded(&robot, &Eeprom::with(bytes));
+                let (settings, outcome) = load_settings(&robot, &Eeprom::with(bytes));
                 if settings == old.0 {
                     olds += 1;
                 } else {
@@ -146,7 +150,7 @@ fn a_save_after_a_power_cut_is_complete_whatever_the_cut_left() {
             cut.bytes_mut()[usize::from(*address)] = *byte;
         }
         let new = save_all(&settings(&robot, 4), &mut cut);
-        assert_eq!(loaded(&robot, &cut).0, new);
+        assert_eq!(load_settings(&robot, &cut).0, new);
     }
 }
 
@@ -160,11 +164,15 @@ fn any_flipped_bit_leaves_the_last_settings_the_previous_or_robot_tomls() {
     for bit in 0..8 * 1024 {
         let mut bytes = *eeprom.bytes();
         bytes[bit / 8] ^= 1 << (bit % 8);
-        let (settings, outcome) = loaded(&robot, &Eeprom::with(bytes));
+        let (settings, outcome) = load_settings(&robot, &Eeprom::with(bytes));
         if settings == last {
             lasts += 1;
         } else {
-            assert_eq!((settings, outcome), (before, Outcome::OneCopy), "bit {bit}");
+            assert_eq!(
+                (settings, outcome),
+                (before, SavedState::OneCopy),
+                "bit {bit}"
+            );
             befores += 1;
         }
     }
@@ -180,13 +188,13 @@ fn any_flipped_bit_of_the_only_copy_leaves_it_or_robot_tomls() {
     for bit in 0..8 * 1024 {
         let mut bytes = *eeprom.bytes();
         bytes[bit / 8] ^= 1 << (bit % 8);
-        let outcome = loaded(&robot, &Eeprom::with(bytes));
+        let outcome = load_settings(&robot, &Eeprom::with(bytes));
         let is_in_content = bit / 8 < 45;
         let other = (64..109).contains(&(bit / 8));
         let expected = match (is_in_content, other) {
-            (true, _) => (Settings::of(&robot), Outcome::Damaged),
-            (_, true) => (only, Outcome::OneCopy),
-            _ => (only, Outcome::Latest),
+            (true, _) => (Settings::of(&robot), SavedState::Damaged),
+            (_, true) => (only, SavedState::OneCopy),
+            _ => (only, SavedState::Latest),
         };
         assert_eq!(outcome, expected, "bit {bit}");
     }
@@ -200,15 +208,15 @@ fn settings_for_other_servos_or_of_another_format_are_not_used() {
     let other = robot
         .clone()
         .with(|content| content.servo_hash ^= 0x0001_0000);
-    let found = loaded(&other, &eeprom);
-    assert_eq!(found, (Settings::of(&other), Outcome::Foreign));
+    let found = load_settings(&other, &eeprom);
+    assert_eq!(found, (Settings::of(&other), SavedState::Foreign));
     let mut format = *settings(&robot, 1).bytes();
     format[0] = 2;
     save_all(&Settings::from_bytes(format), &mut eeprom);
-    assert_eq!(loaded(&robot, &eeprom).1, Outcome::Foreign);
+    assert_eq!(load_settings(&robot, &eeprom).1, SavedState::Foreign);
     // Settings saved after that are used.
     let own = save_all(&settings(&other, 5), &mut eeprom);
-    let (now, _) = loaded(&other, &eeprom);
+    let (now, _) = load_settings(&other, &eeprom);
     assert_eq!(now, own);
 }
 
@@ -219,9 +227,13 @@ fn every_bit_of_the_servos_hash_tells_other_servos() {
     save_all(&settings(&robot, 1), &mut eeprom);
     for bit in 0..32 {
         let other = robot.clone().with(|content| content.servo_hash ^= 1 << bit);
-        assert_eq!(loaded(&other, &eeprom).1, Outcome::Foreign, "bit {bit}");
+        assert_eq!(
+            load_settings(&other, &eeprom).1,
+            SavedState::Foreign,
+            "bit {bit}"
+        );
     }
-    assert_eq!(loaded(&robot, &eeprom).1, Outcome::Latest);
+    assert_eq!(load_settings(&robot, &eeprom).1, SavedState::Latest);
 }
 
 #[test]
@@ -233,8 +245,8 @@ fn settings_with_which_a_gait_leaves_the_travel_are_not_used() {
     adjustment.max = Sweep(robot.reach(Servo::A3).max.0 - 1);
     narrow.set_servo(Servo::A3, adjustment);
     save_all(&narrow, &mut eeprom);
-    let found = loaded(&robot, &eeprom);
-    assert_eq!(found, (Settings::of(&robot), Outcome::Unfit));
+    let found = load_settings(&robot, &eeprom);
+    assert_eq!(found, (Settings::of(&robot), SavedState::Unfit));
 }
 
 #[test]
@@ -260,16 +272,16 @@ fn a_rest_is_remembered_until_it_is_forgotten_and_only_by_its_own_robot() {
     for sweeps in [[0, 1, -2, 30_000], [-100, 4000, 17, -32_768]] {
         let rest_pose = Pose(sweeps.map(Sweep));
         let saved = Settings::of_pose(&rest_pose, &robot);
-        let mut writing = REST_POSE.write();
+        let mut writing = REST_POSE.start_write();
         while writing.step(saved.bytes(), &mut eeprom) == Progress::InProgress {}
         assert_eq!(last_rest_pose(&robot, &eeprom), Some(rest_pose));
         let other = robot.clone().with(|content| content.servo_hash = 7);
         assert_eq!(last_rest_pose(&other, &eeprom), None);
     }
-    let mut writing = REST_POSE.invalidate();
-    while writing.step(&[0; CONTENT], &mut eeprom) == Progress::InProgress {}
+    let mut writing = REST_POSE.start_invalidation();
+    while writing.step(&[0; CONTENT_BYTES], &mut eeprom) == Progress::InProgress {}
     assert_eq!(last_rest_pose(&robot, &eeprom), None);
-    let outside = |address: &u16| !(128..128 + LENGTH).contains(address);
+    let outside = |address: &u16| !(128..128 + RECORD_BYTES).contains(address);
     let touched: Vec<u16> = eeprom
         .log
         .iter()
@@ -294,7 +306,7 @@ fn random_bytes_in_the_memory_are_not_read_as_settings() {
                 (state >> 24) as u8
             }
         });
-        let found = loaded(&robot, &Eeprom::with(bytes));
-        assert_eq!(found, (Settings::of(&robot), Outcome::Damaged));
+        let found = load_settings(&robot, &Eeprom::with(bytes));
+        assert_eq!(found, (Settings::of(&robot), SavedState::Damaged));
     }
 }

@@ -85,15 +85,15 @@ fn kept_state_survives_a_reset_but_not_a_loss_of_power() {
         for reported in CAUSES {
             let again = ram.after_the_reset();
             let restart = begin(&again, reported);
-            assert_eq!(restart.before, Some(stance(n)));
+            assert_eq!(restart.stance_before, Some(stance(n)));
             assert_eq!(restart.brown_outs, n as u8);
             // A second reset, before the program has stored anything.
-            assert_eq!(begin(&again, reported).before, Some(stance(n)));
+            assert_eq!(begin(&again, reported).stance_before, Some(stance(n)));
         }
         let off = ram.after_the_reset();
         assert_eq!(begin(&off, Some(Cause::Power)), Restart::NONE);
         assert_eq!(
-            begin(&off, Some(Cause::External)).before,
+            begin(&off, Some(Cause::External)).stance_before,
             None,
             "nothing was kept since"
         );
@@ -111,7 +111,7 @@ fn a_reset_between_any_two_stores_leaves_the_stance_before_or_the_new_one() {
         for stores in 0..=whole.stores.get() {
             let torn = ram.with_reset_after(stores);
             store_stance(&torn, &stance(n), n as u8);
-            let found = begin(&torn.after_the_reset(), None).before;
+            let found = begin(&torn.after_the_reset(), None).stance_before;
             let index = usize::from(found == Some(stance(n)));
             assert!(index == 1 || found == Some(stance(n - 1)), "{n} {stores}");
             seen[index] += 1;
@@ -133,7 +133,7 @@ fn a_reset_between_any_two_stores_of_the_beginning_loses_nothing() {
         let torn = ram.with_reset_after(stores);
         begin(&torn, None);
         let found = begin(&torn.after_the_reset(), None);
-        assert_eq!(found.before, Some(stance(5)), "{stores}");
+        assert_eq!(found.stance_before, Some(stance(5)), "{stores}");
         assert!((1..=2).contains(&found.count));
         assert!(matches!(found.cause, Cause::Watchdog | Cause::External));
     }
@@ -182,22 +182,22 @@ proptest! {
     ) {
         let mut bytes = bytes;
         // Random bytes contain the mark once in 256 times.
-        prop_assume!(bytes[MARK] != ALIVE);
+        prop_assume!(bytes[MARK_CELL] != POWERED_MARK);
         let ram = Ram::of(bytes.clone());
         let restart = begin(&ram, reported);
-        prop_assert_eq!((restart.count, restart.before), (0, None));
-        prop_assert_eq!(begin(&ram, Some(Cause::External)).before, None);
-        bytes[MARK] = ALIVE;
-        bytes[STATE] = 0x5b;
-        prop_assert_eq!(begin(&Ram::of(bytes), reported).before, None);
+        prop_assert_eq!((restart.count, restart.stance_before), (0, None));
+        prop_assert_eq!(begin(&ram, Some(Cause::External)).stance_before, None);
+        bytes[MARK_CELL] = POWERED_MARK;
+        bytes[STATE_CELL] = 0x5b;
+        prop_assert_eq!(begin(&Ram::of(bytes), reported).stance_before, None);
     }
 
     #[test]
     fn a_bit_that_changes_in_a_stance_is_found(bit in 0..8 * COPY_CELLS, n in 1i16..100) {
         let ram = Ram::powered();
         store_stance(&ram, &stance(n), n as u8);
-        let copy = COPIES + COPY_CELLS * usize::from(ram.get(VALID_COPY) & 1);
+        let copy = FIRST_COPY_CELL + COPY_CELLS * usize::from(ram.get(VALID_COPY_CELL) & 1);
         ram.set(copy + bit / 8, ram.get(copy + bit / 8) ^ (1 << (bit % 8)));
-        prop_assert_eq!(begin(&ram, None).before, None);
+        prop_assert_eq!(begin(&ram, None).stance_before, None);
     }
 }

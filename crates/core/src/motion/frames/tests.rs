@@ -292,7 +292,7 @@ fn a_speed_is_gathered_and_lost_as_pace() {
     assert_eq!(paces, [877, 730, 583, 512, 512]);
     motion.set_speed(100);
     motion.run(10);
-    assert_eq!(motion.pace(), pace::FULL);
+    assert_eq!(motion.pace(), pace::FULL_PACE);
 }
 
 // `stop` and `rest` in any state.

@@ -5,8 +5,8 @@ use proptest::prelude::*;
 use super::*;
 use crate::numbers::bars::MIN_COUPLER;
 use crate::numbers::curve::ENTRIES;
-use crate::sample::Bars;
-use crate::sample::bounds::{self, KNOWN};
+use crate::sample::SampleCouplers;
+use crate::sample::bounds::{self, MIN_KNOWN_MARGIN};
 
 /// The longest coupler that a loop's step allows.
 const MAX_COUPLER: i16 = 32_511;
@@ -54,25 +54,25 @@ proptest! {
         };
         let (reach, min) = (reach_sq(left, right), folded_sq(left, right));
         let tips_sq = min + (f64::from(reach - min) * share) as u32;
-        let bars = Bars::new(left, right);
+        let bars = SampleCouplers::new(left, right);
         let lean = bars.couplers().at(tips_sq);
         let bound = bounds::LeanError::of(left, right, [f64::from(tips_sq); 2]);
         let (left, right) = (f64::from(left), f64::from(right));
         // A loop that just fails to close may close with rounded lengths.
         let [rise, skew] = truth(left, right, tips_sq).unwrap_or([0.0, f64::NAN]);
         let Some(lean) = lean else {
-            prop_assert!(type2(left, right, tips_sq, rise) < KNOWN, "a lean for {rise}");
+            prop_assert!(type2(left, right, tips_sq, rise) < MIN_KNOWN_MARGIN, "a lean for {rise}");
             return Ok(());
         };
         let error = [
             f64::from(lean.rise) / 1024.0 - rise,
             f64::from(lean.skew) / 1024.0 - skew,
         ];
-        if type2(left, right, tips_sq, rise) < KNOWN {
+        if type2(left, right, tips_sq, rise) < MIN_KNOWN_MARGIN {
             // An entry above the largest number of a table is cut off, and below its peak the table keeps the largest
             // rise. No value there may give a margin above the threshold.
             let read = f64::from(lean.rise) / 1024.0 - bound.rise;
-            prop_assert!(type2(left, right, tips_sq, read) < KNOWN, "rise {error:?}, {bound:?}");
+            prop_assert!(type2(left, right, tips_sq, read) < MIN_KNOWN_MARGIN, "rise {error:?}, {bound:?}");
             return Ok(());
         }
         prop_assert!(error[0].abs() <= bound.rise, "rise {error:?}, {bound:?}");
@@ -89,7 +89,7 @@ proptest! {
         right in MIN_COUPLER..=MAX_COUPLER,
         beyond in 0u32..1 << 28,
     ) {
-        let bars = Bars::new(left, right);
+        let bars = SampleCouplers::new(left, right);
         let (reach, min) = (reach_sq(left, right), folded_sq(left, right));
         prop_assert_eq!(bars.couplers().at(reach + beyond), None);
         prop_assert_eq!(bars.couplers().at(min.saturating_sub(beyond)), None);
@@ -144,7 +144,7 @@ fn entries_are_rounded_to_nearest_but_those_of_a_falling_rise_down() {
 #[test]
 fn couplers_that_differ_by_a_few_steps_are_couplers_too() {
     for more in 0..300 {
-        let bars = Bars::new(12_800, 12_800 + more);
+        let bars = SampleCouplers::new(12_800, 12_800 + more);
         for tips_sq in [1 << 20, 1 << 24, 1 << 27] {
             let lean = bars.couplers().at(tips_sq).expect("closes");
             let [rise, _] = truth(12_800.0, 12_800.0 + f64::from(more), tips_sq).expect("closes");

@@ -6,9 +6,10 @@ use std::vec::Vec;
 use crc::{CRC_32_ISO_HDLC, Crc};
 use lizard_avr::{Flash, Plain};
 
-use super::seal::sealed;
+use super::seal::add_seal;
 use super::{
-    AFTER_NUMBERS, CURVES, FORMAT, Header, MAGIC, MAX_NAME_BYTES, MapHead, Numbers, Part, Place,
+    AFTER_NUMBERS, CURVES, FORMAT, Header, MAGIC, MAX_NAME_BYTES, MapHeader, Numbers, Part,
+    PartRange,
 };
 use crate::numbers::bars::Bars;
 use crate::numbers::calibration::Calibration;
@@ -155,7 +156,7 @@ impl Content {
         let mut place = |count: usize, bytes: &[u8]| {
             let at = usize::from(AFTER_NUMBERS) + rest.len();
             rest.extend(bytes);
-            Place {
+            PartRange {
                 at: number(at),
                 count: number(count),
             }
@@ -188,7 +189,7 @@ impl Content {
             rail: self.rail.unwrap_or(0),
             slow_pace: self.slow_pace,
             pins: self.pins,
-            maps: self.maps.each_ref().map(|map| MapHead {
+            maps: self.maps.each_ref().map(|map| MapHeader {
                 first: map.first,
                 rows: u8::try_from(map.rows.len()).expect("at most 255"),
             }),
@@ -197,8 +198,8 @@ impl Content {
         let mut digest = CRC.digest();
         // The hash does not include the maps: they only save time and change no decision.
         let mut without_maps = numbers;
-        without_maps.parts[Part::Rows as usize] = Place { at: 0, count: 0 };
-        without_maps.maps = [MapHead { first: 0, rows: 0 }; 4];
+        without_maps.parts[Part::Rows as usize] = PartRange { at: 0, count: 0 };
+        without_maps.maps = [MapHeader { first: 0, rows: 0 }; 4];
         digest.update(without_maps.bytes());
         digest.update(&rest[..rest.len() - columns.len()]);
         let mut name = [0; MAX_NAME_BYTES];
@@ -212,7 +213,7 @@ impl Content {
             servo_hash: self.servo_hash,
             name,
         };
-        sealed([header.bytes(), numbers.bytes(), &rest].concat())
+        add_seal([header.bytes(), numbers.bytes(), &rest].concat())
     }
 
     /// Appends the tables of head and tail to `rest`, equal ones only once, and returns the address of each; 0 for a

@@ -2,7 +2,7 @@
 //!
 //! A 16-bit checksum misses one change in 65 536. Two kinds of change are likely: a write that ended early, at any of
 //! thousands of bytes, so that erased flash follows the written bytes; and a flipped bit of the length. Neither may
-//! be missed. So `sealed` tries all of them, and adds a byte if the checksum would miss one.
+//! be missed. So `add_seal` tries all of them, and adds a byte if the checksum would miss one.
 
 use core::mem::offset_of;
 use std::vec::Vec;
@@ -32,7 +32,7 @@ pub fn seal(section: &mut [u8]) {
 ///
 /// # Panics
 /// If the section is longer than 65 535 bytes.
-pub(super) fn sealed(mut section: Vec<u8>) -> Vec<u8> {
+pub(super) fn add_seal(mut section: Vec<u8>) -> Vec<u8> {
     loop {
         let length = u16::try_from(section.len()).expect("at most 65535");
         section[LENGTH..CRC].copy_from_slice(&length.to_le_bytes());
@@ -208,7 +208,7 @@ mod tests {
         fn a_sealed_section_has_its_length_and_sum_and_at_most_some_bytes_more(
             bytes in prop::collection::vec(any::<u8>(), CRC_COVERS_FROM..600),
         ) {
-            let section = sealed(bytes.clone());
+            let section = add_seal(bytes.clone());
             let length = u16::from_le_bytes([section[LENGTH], section[LENGTH + 1]]);
             let crc = u16::from_le_bytes([section[CRC], section[CRC + 1]]);
             prop_assert_eq!(usize::from(length), section.len());

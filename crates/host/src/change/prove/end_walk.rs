@@ -7,7 +7,7 @@ use lizard_kinematics::{AssemblyMode, End, FiveBar, Lanes};
 use lizard_robot::{CellMaps, CoreRobot, Robot};
 
 use super::positions::Positions;
-use super::rows::{PairSample, columns, eight_by_eight, lanes, rows_of, sine, splat};
+use super::rows::{PairSample, columns, for_each_eight, lanes, q15_to_sine, splat, tally_rows};
 use super::tally::{STEPS_BAND, Tally, margin_band};
 
 /// The comparison of guard and floating point over all pairs of an end.
@@ -55,12 +55,12 @@ impl<'a> EndComparison<'a> {
         cut: usize,
         progress: &(dyn Fn(u64) + Sync),
     ) -> Tally {
-        rows_of(left, cut, progress, |row| {
+        tally_rows(left, cut, progress, |row| {
             let mut tally = Tally::default();
             let crank = splat(left.exact[row]);
-            eight_by_eight(columns(share, row, right.fixed.len()), |eight, count| {
+            for_each_eight(columns(share, row, right.fixed.len()), |eight, count| {
                 let other = lanes(&right.exact, eight);
-                let pose = self.exact.shape(AssemblyMode::Ahead, crank, other);
+                let pose = self.exact.pose_unchecked(AssemblyMode::Ahead, crank, other);
                 let are_closed = self.exact.closes(&pose);
                 let Lanes(type2) = pose.type2;
                 let Lanes(type1_left) = pose.type1_left();
@@ -72,7 +72,7 @@ impl<'a> EndComparison<'a> {
                         is_closed: are_closed[lane],
                         type2: type2[lane],
                         type1: [type1_left[lane], type1_right[lane]],
-                        across: across[lane],
+                        crank_tip_distance: across[lane],
                     };
                     let margins = self.fixed.margins(&left.fixed[row], &right.fixed[column]);
                     let place = || {
@@ -126,12 +126,15 @@ impl<'a> EndComparison<'a> {
         } = margins;
         // A pose whose couplers nearly fold is refused, whatever its other margins are.
         if truth.is_closed && truth.type2 > self.limits[0] - self.margin_band {
-            Tally::raise(&mut tally.type2, (sine(type2.0).abs() - truth.type2).abs());
+            Tally::raise(
+                &mut tally.type2,
+                (q15_to_sine(type2.0).abs() - truth.type2).abs(),
+            );
             for (fixed, exact) in [type1_left, type1_right].into_iter().zip(truth.type1) {
-                Tally::raise(&mut tally.type1, (sine(fixed.0) - exact).abs());
+                Tally::raise(&mut tally.type1, (q15_to_sine(fixed.0) - exact).abs());
             }
         }
-        let (clear, crossed) = truth.clear_by(self.limits);
+        let (clear, crossed) = truth.distances_from_limits(self.limits);
         let exact = clear >= 0.0 && crossed > 0.0;
         if fixed != exact {
             // The smaller distance from a limit, relative to its band, decides.
@@ -147,13 +150,13 @@ impl<'a> EndComparison<'a> {
                     place(),
                     if fixed { "safe" } else { "unsafe" },
                     if exact { "safe" } else { "unsafe" },
-                    sine(type2.0),
-                    sine(type1_left.0),
-                    sine(type1_right.0),
+                    q15_to_sine(type2.0),
+                    q15_to_sine(type1_left.0),
+                    q15_to_sine(type1_right.0),
                     truth.type2,
                     truth.type1[0],
                     truth.type1[1],
-                    truth.across,
+                    truth.crank_tip_distance,
                 )
             });
         }
@@ -166,19 +169,19 @@ struct EndTruth {
     type2: f64,
     type1: [f64; 2],
     /// The distance from the left crank tip to the right one across the end, mm.
-    across: f64,
+    crank_tip_distance: f64,
 }
 
 impl EndTruth {
     /// The distances from the limits: of the smallest margin, a sine; and of the crank tips from crossing, mm.
     /// Negative beyond the limit.
     #[inline(always)]
-    fn clear_by(&self, [least2, least1]: [f64; 2]) -> (f64, f64) {
+    fn distances_from_limits(&self, [least2, least1]: [f64; 2]) -> (f64, f64) {
         if !self.is_closed {
-            return (-least2, self.across);
+            return (-least2, self.crank_tip_distance);
         }
         let type1 = self.type1[0].min(self.type1[1]) - least1;
-        ((self.type2 - least2).min(type1), self.across)
+        ((self.type2 - least2).min(type1), self.crank_tip_distance)
     }
 }
 

@@ -20,7 +20,7 @@ use serde::{Deserialize, Serialize};
 use crate::Failure;
 use crate::shared::json;
 use crate::shared::number::grouped;
-use crate::shared::progress::bar;
+use crate::shared::progress::progress_bar;
 use crate::shared::spread::{Spread, Spreads};
 
 pub use rows::PairSample;
@@ -133,13 +133,13 @@ pub fn run(args: Args) -> Result<(), Failure> {
         offset: args.offset,
     };
     let rows = Proof::rows(guard) * args.spread.own(walk::PIECES) as u64 / walk::PIECES as u64;
-    let bar = bar(
+    let bar = progress_bar(
         rows as usize,
         "{bar:40} {percent} % of all rows, {eta} left",
     );
     let walk = walk::Walk::new(&robot, guard, share);
     let piece = |index| walk.piece(index, &|rows| bar.inc(rows));
-    let pieces = args.spread.all(&args, walk::PIECES, piece)?;
+    let pieces = args.spread.all_pieces(&args, walk::PIECES, piece)?;
     bar.finish_and_clear();
     let Some(pieces) = pieces else {
         return Ok(());
@@ -148,7 +148,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
 
     let mut out = io::stdout().lock();
     if args.json {
-        json::line(&mut out, &proof)?;
+        json::write_line(&mut out, &proof)?;
     } else {
         print(&proof, share, &mut out)?;
     }

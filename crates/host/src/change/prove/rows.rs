@@ -38,7 +38,7 @@ pub fn columns(share: PairSample, row: usize, count: usize) -> impl Iterator<Ite
 }
 
 /// Computes the rows of a piece on all cores, and adds their tallies.
-pub fn rows_of(
+pub fn tally_rows(
     first: &Positions,
     cut: usize,
     progress: &(dyn Fn(u64) + Sync),
@@ -57,7 +57,7 @@ pub fn rows_of(
 
 /// Calls `take` with the columns of a row, eight at a time, and with the number of valid ones; the last column is
 /// repeated to fill the eight.
-pub fn eight_by_eight(
+pub fn for_each_eight(
     mut columns: impl Iterator<Item = usize>,
     mut take: impl FnMut([usize; LANES], usize),
 ) {
@@ -92,6 +92,6 @@ pub fn splat(vector: Vector) -> Vector<Lanes<LANES>> {
 
 /// Converts a margin of the firmware to a sine.
 #[inline]
-pub fn sine(q15: i16) -> f64 {
+pub fn q15_to_sine(q15: i16) -> f64 {
     f64::from(q15) / f64::from(ONE_Q15)
 }

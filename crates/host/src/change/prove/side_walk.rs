@@ -8,11 +8,11 @@ use lizard_kinematics::{End, Lanes, Side, Slider};
 use lizard_robot::{CellMaps, CoreRobot, Robot};
 
 use super::positions::Positions;
-use super::rows::{PairSample, columns, eight_by_eight, lanes, rows_of, sine, splat};
+use super::rows::{PairSample, columns, for_each_eight, lanes, q15_to_sine, splat, tally_rows};
 use super::tally::{MARGIN_BAND, STEPS_BAND, Tally};
 
 /// Compares the guard with geometry at the pairs of one side.
-pub struct SideWalk<'a> {
+pub struct SideComparison<'a> {
     side: Side,
     cells: Cells<'a>,
     fixed: lizard_core::numbers::slider::Slider,
@@ -21,7 +21,7 @@ pub struct SideWalk<'a> {
     steps_per_mm: f64,
 }
 
-impl<'a> SideWalk<'a> {
+impl<'a> SideComparison<'a> {
     pub fn new(robot: &Robot, guard: &CoreRobot, maps: &'a CellMaps, side: Side) -> Self {
         let (fixed, map) = match side {
             Side::Left => (guard.side(part::Side::Left), &maps.left),
@@ -50,11 +50,11 @@ impl<'a> SideWalk<'a> {
             Side::Right => direction.mirrored(),
         };
         let band = STEPS_BAND / self.steps_per_mm;
-        rows_of(front, cut, progress, |row| {
+        tally_rows(front, cut, progress, |row| {
             let mut tally = Tally::default();
             let crank = in_side_frame(front.fixed[row]);
             let front_arm = splat(self.side.front_arm(front.exact[row]));
-            eight_by_eight(columns(share, row, rear.fixed.len()), |eight, count| {
+            for_each_eight(columns(share, row, rear.fixed.len()), |eight, count| {
                 // Positions are in the frame of their end, arms in the frame of the chassis.
                 let crank_rear = End::Tail.mirror(lanes(&rear.exact, eight));
                 let pose = self.exact.shape(self.side.rear_arm(crank_rear), front_arm);
@@ -94,12 +94,12 @@ impl<'a> SideWalk<'a> {
 }
 
 /// Compares the guard with geometry at all positions of one leg.
-pub fn leg(robot: &Robot, guard: &CoreRobot, positions: &Positions) -> Tally {
+pub fn compare_leg(robot: &Robot, guard: &CoreRobot, positions: &Positions) -> Tally {
     let mut tally = Tally::default();
     let min = guard.limits().leg.0;
     for (position, (fixed, exact)) in positions.fixed.iter().zip(&positions.exact).enumerate() {
         tally.pairs += 1;
-        Tally::raise(&mut tally.leg, (sine(fixed.sin) - exact.y).abs());
+        Tally::raise(&mut tally.leg, (q15_to_sine(fixed.sin) - exact.y).abs());
         let clear = exact.y - robot.limits().leg;
         if (fixed.sin >= min) != (clear >= 0.0) {
             tally.record_difference(false, clear.abs(), MARGIN_BAND, || {

@@ -8,7 +8,7 @@ use lizard_robot::{CellMaps, CoreRobot, Robot, servo};
 use super::end_walk::{EndComparison, bands};
 use super::positions::Positions;
 use super::rows::{CUTS, PairSample};
-use super::side_walk::{SideWalk, leg};
+use super::side_walk::{SideComparison, compare_leg};
 use super::tally::{Finding, MARGIN_BAND, Tally};
 
 /// Number of pieces of the whole walk: [`CUTS`] for each end and each side.
@@ -49,7 +49,7 @@ impl<'a> Walk<'a> {
             walk.walk(positions_of(end.servos()), self.share, cut, progress)
         } else {
             let side = Side::ALL[part - End::ALL.len()];
-            let walk = SideWalk::new(self.robot, self.guard, &self.maps, side);
+            let walk = SideComparison::new(self.robot, self.guard, &self.maps, side);
             walk.walk(positions_of(side.servos()), self.share, cut, progress)
         }
     }
@@ -58,7 +58,7 @@ impl<'a> Walk<'a> {
 /// Makes the findings for every end, side and leg of a robot from the tallies of all pieces, in order.
 pub fn findings(robot: &Robot, guard: &CoreRobot, pieces: Vec<Tally>) -> Vec<Finding> {
     let mut pieces = pieces.into_iter();
-    let mut of_one = || {
+    let mut next_part_tally = || {
         pieces
             .by_ref()
             .take(CUTS)
@@ -69,21 +69,21 @@ pub fn findings(robot: &Robot, guard: &CoreRobot, pieces: Vec<Tally>) -> Vec<Fin
         findings.push(Finding {
             part: end.name().to_string(),
             servos: names(end.servos()),
-            tally: of_one(),
+            tally: next_part_tally(),
         });
     }
     for side in Side::ALL {
         findings.push(Finding {
             part: format!("{side} side"),
             servos: names(side.servos()),
-            tally: of_one(),
+            tally: next_part_tally(),
         });
     }
     for (servo, leg_name) in servo::LEGS.iter().enumerate() {
         findings.push(Finding {
             part: format!("leg {leg_name}"),
             servos: vec![servo::NAMES[servo]],
-            tally: leg(robot, guard, &Positions::of(guard, servo)),
+            tally: compare_leg(robot, guard, &Positions::of(guard, servo)),
         });
     }
     findings

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Failure;
 use crate::shared::json;
-use crate::shared::progress::bar;
+use crate::shared::progress::progress_bar;
 use crate::shared::spread::{Spread, Spreads};
 use crate::shared::suggestion::did_you_mean;
 
@@ -85,7 +85,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     };
     let mut out = io::stdout().lock();
     if args.json {
-        json::line(&mut out, &report)?;
+        json::write_line(&mut out, &report)?;
     } else {
         report::print(&report, &mut out)?;
     }
@@ -145,7 +145,7 @@ fn check_name(robot: &Robot, name: &str) -> Result<(), Failure> {
 fn search_all(tuning: &Tuning, args: &Args) -> Result<Option<BuiltGait>, Failure> {
     let rounds = args.rounds as usize;
     let kinds = args.spread.own(Kind::ALL.len());
-    let bar = bar(kinds * trials(rounds), "{bar:40} {pos}/{len} gaits, {eta}");
+    let bar = progress_bar(kinds * trials(rounds), "{bar:40} {pos}/{len} gaits, {eta}");
     let search_one = |index: usize| -> Vec<(f64, Vec<f64>)> {
         let kind = Kind::ALL[index];
         let mut search = tuning.search(kind);
@@ -159,7 +159,7 @@ fn search_all(tuning: &Tuning, args: &Args) -> Result<Option<BuiltGait>, Failure
         }
         search.found()
     };
-    let pieces = args.spread.all(args, Kind::ALL.len(), search_one)?;
+    let pieces = args.spread.all_pieces(args, Kind::ALL.len(), search_one)?;
     bar.finish_and_clear();
     let Some(pieces) = pieces else {
         return Ok(None);

@@ -80,7 +80,7 @@ pub enum SendError {
     Refused(LinkError),
     /// Neither the new nor the old calibration is in effect as a whole.
     #[error("{0}; nothing was saved; send `load` or `factory`, or press the board's reset button")]
-    Between(LinkError),
+    MixedSettings(LinkError),
     /// The calibration that the robot reports differs from the one that was sent.
     #[error("the robot did not accept all of it; nothing was saved, and it keeps its old settings")]
     Differs,
@@ -106,18 +106,18 @@ pub fn send_calibration<P: Read + Write>(
         Ok(false) => SendError::Differs,
         Err(error) => SendError::Refused(error),
     };
-    calibration::apply(&calibration_before, link).map_err(SendError::Between)?;
+    calibration::apply(&calibration_before, link).map_err(SendError::MixedSettings)?;
     Err(error)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::double::robot;
+    use super::super::double::connect_paper_robot;
     use super::*;
 
     #[test]
     fn a_backup_is_in_effect_again_after_restore_and_load() {
-        let mut link = robot();
+        let mut link = connect_paper_robot();
         link.command("trim 3 -4.25").expect("it is accepted");
         link.command("boot walk").expect("it is accepted");
         let saved = calibration::ask(&mut link).expect("it answers");
@@ -135,7 +135,7 @@ mod tests {
 
     #[test]
     fn a_refused_calibration_leaves_what_was_there_also_unsaved() {
-        let mut link = robot();
+        let mut link = connect_paper_robot();
         link.command("trim 3 -4.25").expect("it is accepted");
         let before = calibration::ask(&mut link).expect("it answers");
         let mut calibration = before.clone();

@@ -12,7 +12,7 @@ use super::link::{Link, LinkError};
 /// Fails if there is no answer, or one that is not understood.
 pub fn ask<P: Read + Write>(link: &mut Link<P>) -> Result<Calibration, LinkError> {
     let reply = link.command("cal")?;
-    Calibration::of_lines(&reply.notes).ok_or_else(|| LinkError::Unclear {
+    Calibration::from_lines(&reply.notes).ok_or_else(|| LinkError::Unclear {
         line: "cal".to_owned(),
         answer: reply.notes.join(" / "),
     })
@@ -46,12 +46,12 @@ pub fn apply<P: Read + Write>(
 
 #[cfg(test)]
 mod tests {
-    use super::super::double::{PAPER, robot, robot_of};
+    use super::super::double::{PAPER, connect_paper_robot, connect_robot};
     use super::*;
 
     /// The calibration that the simulated robot starts with.
     fn factory() -> Calibration {
-        ask(&mut robot()).expect("it answers")
+        ask(&mut connect_paper_robot()).expect("it answers")
     }
 
     #[test]
@@ -72,7 +72,7 @@ mod tests {
 
     #[test]
     fn settings_that_were_sent_are_read_back() {
-        let mut link = robot();
+        let mut link = connect_paper_robot();
         let mut calibration = factory();
         calibration.servos[1].trim = -3.25;
         calibration.servos[2].dir = '-';
@@ -91,7 +91,7 @@ mod tests {
         // With a travel of 400 us to each side, a large trim and a large scale exclude each other.
         let narrow = PAPER.replace("min_us = 600.0", "min_us = 1100.0");
         let narrow = narrow.replace("max_us = 2400.0", "max_us = 1900.0");
-        let mut link = robot_of(&narrow);
+        let mut link = connect_robot(&narrow);
         let first = ask(&mut link).expect("it answers");
         let [mut scaled, mut trimmed] = [first.clone(), first];
         scaled.servos[0].scale = 16.0;
@@ -105,7 +105,7 @@ mod tests {
 
     #[test]
     fn settings_that_do_not_suit_the_gaits_are_refused_with_the_robots_reason() {
-        let mut link = robot();
+        let mut link = connect_paper_robot();
         let mut calibration = factory();
         calibration.servos[1].limit = [40.0, 43.0];
         let error = apply(&calibration, &mut link).expect_err("too narrow");

@@ -7,7 +7,7 @@ use serialport::SerialPort;
 use super::find;
 use super::link::{Link, LinkError, Timeouts};
 use super::port;
-use crate::shared::plain::plain;
+use crate::shared::plain::escape_controls;
 use crate::{Failure, RobotFile};
 
 /// The board that a subcommand connects to.
@@ -53,7 +53,7 @@ impl Connect {
     /// Fails if the simulated UNO has no robot, firmware or pseudo terminal, or is not built in.
     pub fn finder(self, command: &'static str) -> Result<BoardFinder, Failure> {
         if self.sim {
-            let robot = RobotFile::at(self.robot);
+            let robot = RobotFile::from_path(self.robot);
             return simulated(self.elf.as_deref(), &robot, command);
         }
         Ok(BoardFinder {
@@ -73,7 +73,7 @@ fn simulated(
 ) -> Result<BoardFinder, Failure> {
     use simulated_uno::{Fidelity, Port, Uno};
     let robot = file.load()?;
-    let image = crate::shared::firmware::of_robot(elf, file, &robot)?.image;
+    let image = crate::shared::firmware::select_firmware(elf, file, &robot)?.image;
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     crate::simulate::sim::supplies::connect(&mut uno, &robot);
     let port = Port::new().map_err(|error| {
@@ -114,7 +114,7 @@ impl BoardFinder {
                 let port = find::choose(&find::usb_ports(), self.command)
                     .map_err(|error| Failure::Impossible(error.to_string()))?;
                 // The product name comes from the board, so it is made safe to print.
-                (port.name.clone(), plain(&port.to_string()))
+                (port.name.clone(), escape_controls(&port.to_string()))
             }
         };
         Ok(Connection {

@@ -13,11 +13,11 @@ use lizard_core::console::word::Word;
 const DRIVEN_MS: u16 = 901;
 /// Time between two lines that keep the robot walking: short enough that two of three may be lost, even if the
 /// robot's own setting is somewhat shorter than [`DRIVEN_MS`].
-pub(super) const LINE: Duration = Duration::from_millis(200);
+pub(super) const LINE_INTERVAL: Duration = Duration::from_millis(200);
 
 /// A line about `deadman`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Step {
+pub(super) enum DeadmanLine {
     /// Read the robot's own setting.
     Read,
     /// Set `deadman` for driving.
@@ -32,38 +32,41 @@ pub(super) enum Step {
 #[derive(Debug, Default)]
 pub(super) struct Deadman {
     /// The robot's own setting, ms, once it is read.
-    own: Option<u16>,
+    own_ms: Option<u16>,
     pub(super) is_set: bool,
 }
 
 impl Deadman {
     /// The steps before and after a line of the user.
-    pub(super) fn around(&mut self, line: &str) -> (&'static [Step], &'static [Step]) {
+    pub(super) fn steps_around(
+        &mut self,
+        line: &str,
+    ) -> (&'static [DeadmanLine], &'static [DeadmanLine]) {
         let line = line.to_ascii_lowercase();
         let word = line.split_whitespace().next().unwrap_or_default();
         if matches!(word, "cal" | "save") && self.is_set {
             // The robot may have begun to walk since its last status.
-            return (&[Step::Lend], &[Step::Set]);
+            return (&[DeadmanLine::Lend], &[DeadmanLine::Set]);
         }
         if word == "stand" || Word::find(word.as_bytes()).is_some() || self.is_set {
             return (&[], &[]);
         }
         self.is_set = true;
-        match self.own {
-            None => (&[Step::Read, Step::Set], &[]),
-            Some(_) => (&[Step::Set], &[]),
+        match self.own_ms {
+            None => (&[DeadmanLine::Read, DeadmanLine::Set], &[]),
+            Some(_) => (&[DeadmanLine::Set], &[]),
         }
     }
 
     /// The console's line for a step.
-    pub(super) fn line(&mut self, step: Step) -> Option<String> {
-        let own_ms = self.own.unwrap_or(0);
+    pub(super) fn line(&mut self, step: DeadmanLine) -> Option<String> {
+        let own_ms = self.own_ms.unwrap_or(0);
         let ms = match step {
-            Step::Read => return Some("cal".to_owned()),
-            Step::Set if own_ms == 0 => DRIVEN_MS,
-            Step::Set => own_ms.min(DRIVEN_MS),
-            Step::Lend => own_ms,
-            Step::Restore => {
+            DeadmanLine::Read => return Some("cal".to_owned()),
+            DeadmanLine::Set if own_ms == 0 => DRIVEN_MS,
+            DeadmanLine::Set => own_ms.min(DRIVEN_MS),
+            DeadmanLine::Lend => own_ms,
+            DeadmanLine::Restore => {
                 self.is_set = false;
                 own_ms
             }
@@ -77,7 +80,7 @@ impl Deadman {
             .strip_prefix("# deadman ")
             .and_then(|ms| ms.parse().ok())
         {
-            self.own = Some(if ms == DRIVEN_MS { 0 } else { ms });
+            self.own_ms = Some(if ms == DRIVEN_MS { 0 } else { ms });
         }
         ["# A", "# boot ", "# deadman "]
             .iter()
@@ -85,11 +88,11 @@ impl Deadman {
     }
 
     /// Notes a user's line that the robot has accepted.
-    pub(super) fn follow(&mut self, line: &str) {
+    pub(super) fn note_accepted_line(&mut self, line: &str) {
         let line = line.to_ascii_lowercase();
         match line.split_whitespace().collect::<Vec<_>>()[..] {
-            ["deadman", ms] => self.own = ms.parse().ok(),
-            ["load" | "factory"] => self.own = None,
+            ["deadman", ms] => self.own_ms = ms.parse().ok(),
+            ["load" | "factory"] => self.own_ms = None,
             _ => {}
         }
     }

@@ -5,39 +5,39 @@ use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read, Write};
 use std::time::Duration;
 
-use lizard_core::virtual_board::Running;
+use lizard_core::virtual_board::RunningRobot;
 use lizard_robot::Robot;
 
 use super::link::{Link, Timeouts};
 
 /// The core on a virtual board, and its output.
-pub struct Double {
-    running: Running,
+pub struct ConsoleDouble {
+    running: RunningRobot,
     out: VecDeque<u8>,
     /// All text that the link has sent to the robot.
     pub sent: String,
 }
 
 /// A connection to the paper's robot, its banner already read.
-pub fn robot() -> Link<Double> {
-    robot_of(PAPER)
+pub fn connect_paper_robot() -> Link<ConsoleDouble> {
+    connect_robot(PAPER)
 }
 
 /// The robot.toml of the paper's robot.
 pub const PAPER: &str = include_str!("../../../../../robots/paper.toml");
 
 /// A connection to the robot of this robot.toml, its banner already read.
-pub fn robot_of(text: &str) -> Link<Double> {
+pub fn connect_robot(text: &str) -> Link<ConsoleDouble> {
     let robot = Robot::parse(text).expect("its robot.toml is right");
-    let mut link = Link::new(Double::of(&robot), Timeouts::default());
+    let mut link = Link::new(ConsoleDouble::of(&robot), Timeouts::default());
     link.greet().expect("it has a banner");
     link
 }
 
-impl Double {
+impl ConsoleDouble {
     fn of(robot: &Robot) -> Self {
         Self {
-            running: Running::power_on(*robot.firmware()),
+            running: RunningRobot::power_on(*robot.firmware()),
             out: VecDeque::new(),
             sent: String::new(),
         }
@@ -52,7 +52,7 @@ impl Double {
     }
 }
 
-impl Read for Double {
+impl Read for ConsoleDouble {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         if self.out.is_empty() {
             self.running.frame();
@@ -66,7 +66,7 @@ impl Read for Double {
     }
 }
 
-impl Write for Double {
+impl Write for ConsoleDouble {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.sent.push_str(&String::from_utf8_lossy(bytes));
         for byte in bytes {

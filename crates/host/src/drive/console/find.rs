@@ -3,9 +3,9 @@
 use serialport::{SerialPortInfo, SerialPortType};
 
 /// USB vendor IDs of the chips on UNOs and their copies: Arduino's two, and the one of WCH, the maker of the CH340.
-const VENDORS: [u16; 3] = [ARDUINO[0], ARDUINO[1], 0x1a86];
+const UNO_VENDOR_IDS: [u16; 3] = [ARDUINO_VENDOR_IDS[0], ARDUINO_VENDOR_IDS[1], 0x1a86];
 /// Arduino's USB vendor IDs.
-pub(in crate::drive) const ARDUINO: [u16; 2] = [0x2341, 0x2a03];
+pub(in crate::drive) const ARDUINO_VENDOR_IDS: [u16; 2] = [0x2341, 0x2a03];
 
 /// A USB serial port.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -74,7 +74,7 @@ fn usb(port: SerialPortInfo) -> Option<UsbPort> {
 impl UsbPort {
     /// True if the chip has one of Arduino's vendor IDs.
     pub fn is_arduinos(&self) -> bool {
-        ARDUINO.contains(&self.vendor)
+        ARDUINO_VENDOR_IDS.contains(&self.vendor)
     }
 }
 
@@ -83,7 +83,9 @@ impl UsbPort {
 /// # Errors
 /// Fails if there is no port, or more than one.
 pub fn choose(ports: &[UsbPort], command: &'static str) -> Result<UsbPort, FindError> {
-    let known = ports.iter().filter(|port| VENDORS.contains(&port.vendor));
+    let known = ports
+        .iter()
+        .filter(|port| UNO_VENDOR_IDS.contains(&port.vendor));
     let known: Vec<&UsbPort> = known.collect();
     match (known.as_slice(), ports) {
         ([one], _) => Ok((*one).clone()),

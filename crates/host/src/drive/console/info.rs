@@ -98,7 +98,7 @@ impl Board {
         banner: Option<&str>,
         link: &mut Link<P>,
     ) -> Result<Self, LinkError> {
-        let status = settled(link)?;
+        let status = wait_for_voltages(link)?;
         let calibration = match calibration::ask(link) {
             Ok(calibration) => Some(calibration.into()),
             Err(LinkError::Refused { .. }) => None,
@@ -171,7 +171,7 @@ impl Board {
 
 /// Asks for the status. A robot that has just been reset reports no voltage until its converter has run, so it is
 /// asked again, for a second.
-fn settled<P: Read + Write>(link: &mut Link<P>) -> Result<Status, LinkError> {
+fn wait_for_voltages<P: Read + Write>(link: &mut Link<P>) -> Result<Status, LinkError> {
     for _ in 0..9 {
         let status = status(link)?;
         if status.vcc.is_some() || status.pose.is_none() {
@@ -206,12 +206,12 @@ pub(in crate::drive) fn parse_banner(line: &str) -> (Option<String>, Option<Robo
 
 #[cfg(test)]
 mod tests {
-    use super::super::double::{PAPER, robot};
+    use super::super::double::{PAPER, connect_paper_robot};
     use super::*;
 
     #[test]
     fn a_board_says_what_it_has_and_keeps_all_of_it() {
-        let mut link = robot();
+        let mut link = connect_paper_robot();
         link.command("trim 3 -4.25").expect("it is accepted");
         let before = calibration::ask(&mut link).expect("it answers");
         let paper = lizard_robot::Robot::parse(PAPER).expect("it is right");

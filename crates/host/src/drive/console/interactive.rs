@@ -16,7 +16,7 @@ use super::recorder::{self, Event, FORMAT, Recorder};
 use super::screen::Screen;
 use super::session::Session;
 use super::terminal;
-use super::turn_error::TurnError;
+use super::turn_error::DialogueError;
 use crate::Failure;
 use crate::drive::clock::Clock;
 
@@ -43,9 +43,9 @@ pub struct ConsoleArgs {
 type FileRecorder = Recorder<BufWriter<File>>;
 
 /// Longest time that the loop waits for the robot before it checks the keys.
-const TURN: Duration = Duration::from_millis(10);
+const ROBOT_READ_TIMEOUT: Duration = Duration::from_millis(10);
 /// Interval between attempts to find a vanished port.
-const RETRY: Duration = Duration::from_millis(300);
+const RETRY_INTERVAL: Duration = Duration::from_millis(300);
 
 /// Runs `lizard console`.
 ///
@@ -65,10 +65,10 @@ fn dialogue(finder: &BoardFinder, file: Option<PathBuf>) -> Result<(), Failure> 
         session: Session::new(clock.now(), true, file.is_some()).with_person(),
         clock,
         recorder: None,
-        mark: "",
+        status_prefix: "",
     };
     if let Some(path) = file {
-        dialogue.mark = "REC  ";
+        dialogue.status_prefix = "REC  ";
         let mut recorder = recorder::create(&path)?;
         let event = Event::Begin {
             format: FORMAT.to_owned(),
@@ -98,21 +98,24 @@ struct Dialogue {
     clock: Clock,
     recorder: Option<FileRecorder>,
     /// Beginning of the status line: shows that the session is recorded.
-    mark: &'static str,
+    status_prefix: &'static str,
 }
 
 impl Dialogue {
     /// Sends the next line and reads the lines that have arrived; `show` prints the lines that are for the user.
-    fn turn(
+    fn exchange_lines(
         &mut self,
         board: &mut Connection,
         mut show: impl FnMut(&str) -> io::Result<()>,
-    ) -> Result<(), TurnError> {
+    ) -> Result<(), DialogueError> {
         if let Some(line) = self.session.next_line(self.clock.now()) {
             board.link.send(&line)?;
         }
         // At most 51 lines, since keys are not handled meanwhile.
-        for wait in [TURN; 1].into_iter().chain([Duration::ZERO; 50]) {
+        for wait in [ROBOT_READ_TIMEOUT; 1]
+            .into_iter()
+            .chain([Duration::ZERO; 50])
+        {
             let Some(line) = board.link.line(wait)? else {
                 break;
             };
@@ -120,7 +123,7 @@ impl Dialogue {
                 show(&line)?;
             }
         }
-        let overdue = self.session.overdue(self.clock.now());
+        let overdue = self.session.end_overdue_question(self.clock.now());
         for event in self.session.take_events() {
             self.record(event)?;
         }
@@ -158,7 +161,7 @@ impl Dialogue {
         while !(ended && self.session.is_idle()) || asks_last {
             if ended && self.session.is_idle() {
                 asks_last = false;
-                self.session.poll(self.clock.now());
+                self.session.request_status(self.clock.now());
             }
             while !ended {
                 match lines.try_recv() {
@@ -168,7 +171,7 @@ impl Dialogue {
                     Err(TryRecvError::Disconnected) => ended = true,
                 }
             }
-            let outcome = self.turn(&mut board, |line| writeln!(out, "{line}"));
+            let outcome = self.exchange_lines(&mut board, |line| writeln!(out, "{line}"));
             outcome.map_err(|error| failure(error, &board))?;
         }
         if self.session.is_driven() {
@@ -180,7 +183,7 @@ impl Dialogue {
         if let Some(recorder) = &mut self.recorder {
             recorder.flush()?;
         }
-        self.session.verdict()
+        self.session.check_all_accepted()
     }
 
     fn with_terminal(
@@ -201,9 +204,9 @@ impl Dialogue {
                 board = self.reopen(finder, &mut screen)?;
                 continue;
             };
-            match self.turn(present, |line| screen.print(line)) {
+            match self.exchange_lines(present, |line| screen.print(line)) {
                 Ok(()) => {}
-                Err(TurnError::Link(LinkError::Gone)) => {
+                Err(DialogueError::Link(LinkError::Gone)) => {
                     let words = format!("{}: {}", present.name, LinkError::Gone);
                     screen.print(&words)?;
                     self.record(Event::Gone)?;
@@ -215,11 +218,14 @@ impl Dialogue {
                     break;
                 }
             }
-            let status = self.session.status().map(super::status::Status::line);
+            let status = self
+                .session
+                .status()
+                .map(super::status::Status::status_line);
             let status = status.unwrap_or_default();
-            screen.draw(&format!("{}{status}", self.mark), &prompt)?;
+            screen.draw(&format!("{}{status}", self.status_prefix), &prompt)?;
         }
-        if let (Some(board), Some(line)) = (&mut board, self.session.last_line()) {
+        if let (Some(board), Some(line)) = (&mut board, self.session.restore_deadman()) {
             let _ = board.link.ask(&line);
         }
         drop(screen);
@@ -255,7 +261,7 @@ impl Dialogue {
                 match outcome {
                     PromptEvent::Edited => {}
                     PromptEvent::Leave => return Ok(true),
-                    PromptEvent::Stop => {
+                    PromptEvent::Suspend => {
                         screen.leave()?;
                         terminal::stop()?;
                         screen.enter()?;
@@ -280,7 +286,7 @@ impl Dialogue {
         finder: &BoardFinder,
         screen: &mut Screen,
     ) -> Result<Option<Connection>, Failure> {
-        std::thread::sleep(RETRY);
+        std::thread::sleep(RETRY_INTERVAL);
         let Ok(mut board) = finder.open() else {
             return Ok(None);
         };
@@ -299,11 +305,11 @@ impl Dialogue {
 }
 
 /// Converts an error of the dialogue into the message for the user.
-fn failure(error: TurnError, board: &Connection) -> Failure {
+fn failure(error: DialogueError, board: &Connection) -> Failure {
     match error {
-        TurnError::Link(error) => board.failure(&error),
-        TurnError::Io(error) => error.into(),
-        TurnError::File(failure) => failure,
+        DialogueError::Link(error) => board.failure(&error),
+        DialogueError::Io(error) => error.into(),
+        DialogueError::File(failure) => failure,
     }
 }
 

@@ -17,7 +17,7 @@ pub enum PromptEvent {
     /// Quit the program.
     Leave,
     /// Suspend the program until the shell resumes it.
-    Stop,
+    Suspend,
 }
 
 /// An input line.
@@ -26,7 +26,7 @@ pub struct Prompt {
     input: Input,
     history: Vec<String>,
     /// The index of the shown line in the history; the history's length for the line being typed.
-    at: usize,
+    shown_index: usize,
     /// The unfinished line, while an older one is shown.
     draft: String,
 }
@@ -35,7 +35,7 @@ impl Prompt {
     /// An empty line with a history.
     pub fn new(history: Vec<String>) -> Self {
         Self {
-            at: history.len(),
+            shown_index: history.len(),
             history,
             ..Self::default()
         }
@@ -55,11 +55,11 @@ impl Prompt {
                 }
                 self.input.handle(tui_input::InputRequest::DeleteNextChar);
             }
-            KeyCode::Char('z') if control => return PromptEvent::Stop,
-            KeyCode::Up => self.go_to_entry(self.at.saturating_sub(1)),
-            KeyCode::Char('p') if control => self.go_to_entry(self.at.saturating_sub(1)),
-            KeyCode::Down => self.go_to_entry(self.at + 1),
-            KeyCode::Char('n') if control => self.go_to_entry(self.at + 1),
+            KeyCode::Char('z') if control => return PromptEvent::Suspend,
+            KeyCode::Up => self.go_to_entry(self.shown_index.saturating_sub(1)),
+            KeyCode::Char('p') if control => self.go_to_entry(self.shown_index.saturating_sub(1)),
+            KeyCode::Down => self.go_to_entry(self.shown_index + 1),
+            KeyCode::Char('n') if control => self.go_to_entry(self.shown_index + 1),
             KeyCode::Esc => return PromptEvent::Line("stop".to_owned()),
             KeyCode::Enter => return self.enter(),
             KeyCode::Char('j' | 'm') if control => return self.enter(),
@@ -93,7 +93,7 @@ impl Prompt {
             let surplus = self.history.len().saturating_sub(MAX_HISTORY);
             self.history.drain(..surplus);
         }
-        self.at = self.history.len();
+        self.shown_index = self.history.len();
         self.draft.clear();
         match line.as_str() {
             "" => PromptEvent::Edited,
@@ -105,13 +105,13 @@ impl Prompt {
     fn go_to_entry(&mut self, to: usize) {
         let end = self.history.len();
         let to = to.min(end);
-        if to == self.at {
+        if to == self.shown_index {
             return;
         }
-        if self.at == end {
+        if self.shown_index == end {
             self.draft = self.text().to_owned();
         }
-        self.at = to;
+        self.shown_index = to;
         let line = self.history.get(to).unwrap_or(&self.draft);
         self.input = Input::new(line.clone());
     }

@@ -7,10 +7,10 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use super::status::angles;
+use super::status::parse_angles;
 use crate::Failure;
 #[cfg(feature = "simulator")]
-use crate::shared::plain::plain;
+use crate::shared::plain::escape_controls;
 use crate::shared::{files, json};
 
 /// The value of `format` in the first line. The number rises when a key changes its meaning.
@@ -99,7 +99,7 @@ impl<W: Write> Recorder<W> {
     pub fn write(&mut self, now: Instant, event: Event) -> Result<(), Failure> {
         let ms = now.saturating_duration_since(self.begin).as_millis() as u64;
         let is_pose = matches!(event, Event::Pose { .. });
-        json::line(&mut self.out, &Entry { ms, event })
+        json::write_line(&mut self.out, &Entry { ms, event })
             .map_err(|error| self.write_failure(&error))?;
         if is_pose { Ok(()) } else { self.flush() }
     }
@@ -119,7 +119,7 @@ impl<W: Write> Recorder<W> {
 
 impl Event {
     /// The event of a line that begins with `#`: a pose, or a note.
-    pub fn of_note(line: &str) -> Self {
+    pub fn from_note(line: &str) -> Self {
         match pose(line) {
             Some((frame, angles)) => Self::Pose { frame, angles },
             None => Self::Note(line.to_owned()),
@@ -136,14 +136,14 @@ impl Event {
                 port,
                 banner,
             } => Self::Begin {
-                format: plain(&format),
-                port: plain(&port),
-                banner: banner.as_deref().map(plain),
+                format: escape_controls(&format),
+                port: escape_controls(&port),
+                banner: banner.as_deref().map(escape_controls),
             },
-            Self::Sent(line) => Self::Sent(plain(&line)),
-            Self::Answer(line) => Self::Answer(plain(&line)),
-            Self::Note(line) => Self::Note(plain(&line)),
-            Self::Status(line) => Self::Status(plain(&line)),
+            Self::Sent(line) => Self::Sent(escape_controls(&line)),
+            Self::Answer(line) => Self::Answer(escape_controls(&line)),
+            Self::Note(line) => Self::Note(escape_controls(&line)),
+            Self::Status(line) => Self::Status(escape_controls(&line)),
             Self::Pose { .. } | Self::Gone => self,
         }
     }
@@ -152,7 +152,7 @@ impl Event {
 /// Parses a line `# t=<frame> pose=<angles>`; `None` for any other line.
 fn pose(line: &str) -> Option<(u64, [f64; 4])> {
     let (frame, pose) = line.strip_prefix("# t=")?.split_once(" pose=")?;
-    Some((frame.parse().ok()?, angles(pose)?))
+    Some((frame.parse().ok()?, parse_angles(pose)?))
 }
 
 #[cfg(test)]
@@ -173,8 +173,8 @@ mod tests {
                 banner: None,
             },
             Event::Sent("walk".to_owned()),
-            Event::of_note("# t=7 pose=1.00,2.00,3.00,4.50"),
-            Event::of_note("# fault: x"),
+            Event::from_note("# t=7 pose=1.00,2.00,3.00,4.50"),
+            Event::from_note("# fault: x"),
             Event::Gone,
         ];
         for (n, event) in events.iter().enumerate() {

@@ -8,7 +8,7 @@ use crossterm::{cursor, event, execute, queue};
 
 use super::prompt::Prompt;
 
-const SIGN: &str = "> ";
+const PROMPT_SIGN: &str = "> ";
 
 /// A terminal that reports single keys. Dropping it restores the terminal.
 pub struct Screen {
@@ -74,7 +74,7 @@ impl Screen {
         // A line that fills its last column would wrap.
         let room = usize::from(width).saturating_sub(1);
         let status: String = status.chars().take(room).collect();
-        let sign = &SIGN[..SIGN.len().min(room)];
+        let sign = &PROMPT_SIGN[..PROMPT_SIGN.len().min(room)];
         let (text, cursor) = prompt.view(room - sign.len());
         let next = (status, text, cursor, width);
         if self.drawn.is_some() && self.last.as_ref() == Some(&next) {

@@ -20,7 +20,7 @@ use super::status::Status;
 use crate::Failure;
 
 /// Interval between two `status` lines while no person drives the robot.
-const POLL: Duration = Duration::from_millis(500);
+const STATUS_INTERVAL: Duration = Duration::from_millis(500);
 /// The longest wait for an answer to a line.
 const TIMEOUT: Duration = Duration::from_millis(2000);
 /// The longest wait for an answer to the program's own `status`.
@@ -28,9 +28,9 @@ const STATUS_TIMEOUT: Duration = Duration::from_millis(600);
 /// Time from one `stop` to the next while none is answered.
 const STOP_INTERVAL: Duration = Duration::from_millis(250);
 /// Time after a `stop` within which answers to earlier `stop` lines may arrive.
-const LATE_ANSWERS: Duration = Duration::from_millis(500);
+const LATE_ANSWER_TIME: Duration = Duration::from_millis(500);
 /// Time without an answer to `stop` after which the user is told.
-const SILENCE: Duration = Duration::from_millis(800);
+const SILENCE_TIMEOUT: Duration = Duration::from_millis(800);
 
 /// A line that waits for its answer.
 #[derive(Debug)]
@@ -51,7 +51,7 @@ enum Queued {
     /// A line of the user.
     Line(String),
     /// A line about `deadman`, by this program.
-    Deadman(deadman::Step),
+    Deadman(deadman::DeadmanLine),
 }
 
 impl Question {
@@ -85,18 +85,18 @@ struct UnansweredStop {
     /// Time at which the user asked to stop.
     since: Instant,
     /// Time at which `stop` is sent again.
-    next: Instant,
+    next_send: Instant,
     /// Number of times that `stop` was sent.
-    times: u32,
+    sent_count: u32,
     /// True once the user has been told that no answer arrives.
-    is_said: bool,
+    is_reported: bool,
 }
 
 /// The state of a dialogue with the robot.
 #[derive(Debug)]
 pub struct Session {
-    waiting: Option<(Question, Instant)>,
-    halt: Option<UnansweredStop>,
+    pending_question: Option<(Question, Instant)>,
+    unanswered_stop: Option<UnansweredStop>,
     /// True from a missing answer until the next answer, so that the user is told once.
     is_silent: bool,
     /// The time until which answers to repeated `stop` lines may arrive.
@@ -122,8 +122,8 @@ impl Session {
     /// `watches_poses`: ask for every pose.
     pub fn new(now: Instant, polls_status: bool, watches_poses: bool) -> Self {
         Self {
-            waiting: None,
-            halt: None,
+            pending_question: None,
+            unanswered_stop: None,
             is_silent: false,
             echoes_until: now,
             queue: VecDeque::new(),
@@ -154,7 +154,7 @@ impl Session {
             self.watches_poses = false;
         }
         let (before, after) = match &mut self.deadman {
-            Some(deadman) => deadman.around(line),
+            Some(deadman) => deadman.steps_around(line),
             None => (&[][..], &[][..]),
         };
         self.queue
@@ -166,13 +166,13 @@ impl Session {
 
     /// The line that restores the robot's own `deadman` before the program ends, so that the
     /// robot continues its gait; `None` if `deadman` is not set.
-    pub fn last_line(&mut self) -> Option<String> {
+    pub fn restore_deadman(&mut self) -> Option<String> {
         let deadman = self.deadman.as_mut().filter(|deadman| deadman.is_set)?;
-        deadman.line(deadman::Step::Restore)
+        deadman.line(deadman::DeadmanLine::Restore)
     }
 
     /// Makes the next `status` due at once; queued lines still go first.
-    pub fn poll(&mut self, now: Instant) {
+    pub fn request_status(&mut self, now: Instant) {
         self.next_poll = now;
     }
 
@@ -186,49 +186,49 @@ impl Session {
         self.queue.clear();
         self.sent += 1;
         self.events.push(Event::Sent("stop".to_owned()));
-        self.halt.get_or_insert(UnansweredStop {
+        self.unanswered_stop.get_or_insert(UnansweredStop {
             since: now,
-            next: now,
-            times: 0,
-            is_said: false,
+            next_send: now,
+            sent_count: 0,
+            is_reported: false,
         });
     }
 
     /// Returns the line to send now; `None` if no line is due, or if an answer has to come first.
     pub fn next_line(&mut self, now: Instant) -> Option<String> {
-        if let Some(halt) = &mut self.halt {
-            if now < halt.next {
+        if let Some(halt) = &mut self.unanswered_stop {
+            if now < halt.next_send {
                 return None;
             }
-            halt.next = now + STOP_INTERVAL;
-            halt.times += 1;
-            self.echoes_until = now + LATE_ANSWERS;
+            halt.next_send = now + STOP_INTERVAL;
+            halt.sent_count += 1;
+            self.echoes_until = now + LATE_ANSWER_TIME;
             return Some("stop".to_owned());
         }
-        if self.waiting.is_some() || now < self.echoes_until {
+        if self.pending_question.is_some() || now < self.echoes_until {
             return None;
         }
         let (question, line) = if self.is_watch_due {
             self.is_watch_due = false;
             (Question::Watch, "watch 1".to_owned())
-        } else if let Some((question, line)) = self.queued() {
+        } else if let Some((question, line)) = self.next_queued() {
             (question, line)
         } else if self.polls_status && now >= self.next_poll {
             let lines = if self.is_driven() {
-                deadman::LINE
+                deadman::LINE_INTERVAL
             } else {
-                POLL
+                STATUS_INTERVAL
             };
             self.next_poll = now + lines;
             (Question::Status, "status".to_owned())
         } else {
             return None;
         };
-        self.waiting = Some((question, now));
+        self.pending_question = Some((question, now));
         Some(line)
     }
 
-    fn queued(&mut self) -> Option<(Question, String)> {
+    fn next_queued(&mut self) -> Option<(Question, String)> {
         while let Some(queued) = self.queue.pop_front() {
             match queued {
                 Queued::Line(line) => {
@@ -272,27 +272,28 @@ impl Session {
             && self.queue.is_empty()
         {
             self.queue
-                .push_back(Queued::Deadman(deadman::Step::Restore));
+                .push_back(Queued::Deadman(deadman::DeadmanLine::Restore));
         }
     }
 
     /// Handles a line from the robot; returns the text to show to the user, if any.
     pub fn receive(&mut self, line: &str) -> Option<String> {
         let visible = Some(line.to_owned());
-        let stands = self.halt.is_some() && cannot_move(line);
+        let stands = self.unanswered_stop.is_some() && is_stop_refusal(line);
         if (line == "ok stop" || stands) && !self.asks_to_stop() {
             return self.take_stop_answer(line).then_some(visible).flatten();
         }
-        if let (Some((Question::Deadman(_), _)), Some(deadman)) = (&self.waiting, &mut self.deadman)
+        if let (Some((Question::Deadman(_), _)), Some(deadman)) =
+            (&self.pending_question, &mut self.deadman)
             && deadman.take_answer_line(line)
         {
             return None;
         }
         if line.starts_with('#') {
-            self.events.push(Event::of_note(line));
+            self.events.push(Event::from_note(line));
             if line.starts_with(BANNER) {
                 // The board has restarted, and has forgotten the question.
-                self.waiting = None;
+                self.pending_question = None;
                 self.is_watch_due = self.watches_poses;
                 self.deadman = self.deadman.take().map(|_| Deadman::default());
             }
@@ -302,7 +303,7 @@ impl Session {
         let status = Status::parse(line);
         self.status = status.clone().or(self.status.take());
         match self
-            .waiting
+            .pending_question
             .take_if(|(question, _)| question.is_answered_by(line))
         {
             Some((Question::Status, _)) if status.is_some() => {
@@ -320,7 +321,7 @@ impl Session {
             Some((Question::Line(sent), _)) if line.starts_with("err ") => self.fail(sent, line),
             Some((Question::Line(sent), _)) => {
                 if let Some(deadman) = &mut self.deadman {
-                    deadman.follow(&sent);
+                    deadman.note_accepted_line(&sent);
                 }
             }
             _ => {}
@@ -331,19 +332,19 @@ impl Session {
 
     /// True if a `stop` sent as a normal line, such as a script's, waits for its answer.
     fn asks_to_stop(&self) -> bool {
-        matches!(&self.waiting, Some((Question::Line(line), _)) if line == "stop")
+        matches!(&self.pending_question, Some((Question::Line(line), _)) if line == "stop")
     }
 
     /// Takes an answer to `stop`; returns false if `stop` has been answered already.
     fn take_stop_answer(&mut self, line: &str) -> bool {
-        let Some(halt) = self.halt.take() else {
+        let Some(halt) = self.unanswered_stop.take() else {
             return false;
         };
-        if halt.times == 1 {
+        if halt.sent_count == 1 {
             self.echoes_until = halt.since;
         }
         // Answers come in order, so the answer to the line before `stop` has been lost.
-        if let Some((Question::Line(sent), _)) = self.waiting.take() {
+        if let Some((Question::Line(sent), _)) = self.pending_question.take() {
             self.fail(sent, "no answer");
         }
         self.events.push(Event::Answer(line.to_owned()));
@@ -351,18 +352,18 @@ impl Session {
     }
 
     /// Ends an overdue question; returns the message to the user, if any.
-    pub fn overdue(&mut self, now: Instant) -> Option<String> {
+    pub fn end_overdue_question(&mut self, now: Instant) -> Option<String> {
         let since = |start: Instant| now.saturating_duration_since(start);
-        if let Some(halt) = &mut self.halt
-            && !halt.is_said
-            && since(halt.since) >= SILENCE
+        if let Some(halt) = &mut self.unanswered_stop
+            && !halt.is_reported
+            && since(halt.since) >= SILENCE_TIMEOUT
         {
-            halt.is_said = true;
+            halt.is_reported = true;
             return Some("(no answer: it may go on; stop is sent until it answers)".to_owned());
         }
         let is_late =
             |(question, start): &mut (Question, Instant)| since(*start) >= question.timeout();
-        let (question, _) = self.waiting.take_if(is_late)?;
+        let (question, _) = self.pending_question.take_if(is_late)?;
         Some(match question {
             Question::Line(line) => {
                 let message = format!("(no answer to `{line}`)");
@@ -387,7 +388,7 @@ impl Session {
     ///
     /// # Errors
     /// Fails if a line was refused, not answered or not sent; the message names the first one.
-    pub fn verdict(&self) -> Result<(), Failure> {
+    pub fn check_all_accepted(&self) -> Result<(), Failure> {
         let Some((line, reason)) = &self.first_failed else {
             return Ok(());
         };
@@ -399,7 +400,7 @@ impl Session {
 
     /// True if no answer is outstanding and no line is queued.
     pub fn is_idle(&self) -> bool {
-        self.waiting.is_none() && self.halt.is_none() && self.queue.is_empty()
+        self.pending_question.is_none() && self.unanswered_stop.is_none() && self.queue.is_empty()
     }
 
     /// The latest status.
@@ -415,7 +416,7 @@ impl Session {
 
 /// True if a line refuses `stop` for lack of pulses: the robot rests, or its flash holds no robot.
 /// The whole line must match: a line cut off by a radio may be the beginning of an older answer.
-fn cannot_move(line: &str) -> bool {
+fn is_stop_refusal(line: &str) -> bool {
     let is_refusal = |code: u8, reason: Text| {
         let mut refusal = format!("err {code} ");
         reason.print(&mut refusal);

@@ -41,7 +41,7 @@ impl Status {
                 .map(|(_, value)| value)
         };
         let volts = |key: &str| value(key)?.parse().ok();
-        let pose = value("pose").and_then(angles);
+        let pose = value("pose").and_then(parse_angles);
         let margin = volts("margin");
         let is_whole = pose.is_some() && margin.is_some();
         if !is_whole && value("fault") != Some(NO_ROBOT) {
@@ -69,7 +69,7 @@ impl Status {
     }
 
     /// The line at the bottom of the console.
-    pub fn line(&self) -> String {
+    pub fn status_line(&self) -> String {
         let mut line = self.gait.clone();
         if let Some([a1, a2, a3, a4]) = self.pose {
             line += &format!("  A1..A4 {a1:.1} {a2:.1} {a3:.1} {a4:.1}");
@@ -98,7 +98,7 @@ impl Status {
 }
 
 /// Parses four angles, separated by commas; `None` for any other text.
-pub fn angles(text: &str) -> Option<[f64; 4]> {
+pub fn parse_angles(text: &str) -> Option<[f64; 4]> {
     let angles: Option<Vec<f64>> = text.split(',').map(|angle| angle.parse().ok()).collect();
     angles?.try_into().ok()
 }
@@ -116,7 +116,7 @@ mod tests {
         let status = Status::parse(WALKS).expect("it is a status");
         assert!(status.is_moving());
         assert_eq!(
-            status.line(),
+            status.status_line(),
             "arc-left  A1..A4 138.6 41.4 318.6 221.4  margin 0.81  5.02 V  servos 5.91 V  \
              no fault  2 bytes lost"
         );
@@ -125,10 +125,10 @@ mod tests {
     #[test]
     fn a_fault_and_the_guard_stand_out() {
         let fault = WALKS.replace("fault=none", "fault=supply");
-        let line = Status::parse(&fault).expect("it is a status").line();
+        let line = Status::parse(&fault).expect("it is a status").status_line();
         assert!(line.contains("FAULT supply"), "{line}");
         let held = WALKS.replace("clear", "held");
-        let line = Status::parse(&held).expect("it is a status").line();
+        let line = Status::parse(&held).expect("it is a status").status_line();
         assert!(line.contains("HELD by the guard"), "{line}");
     }
 
@@ -137,7 +137,7 @@ mod tests {
         let line = "ok gait=rest late=0 rx_lost=0 guard=clear fault=robot reset=power resets=0";
         let status = Status::parse(line).expect("it is a status");
         assert_eq!((status.pose, status.margin, status.vcc), (None, None, None));
-        assert_eq!(status.line(), "rest  FAULT robot");
+        assert_eq!(status.status_line(), "rest  FAULT robot");
     }
 
     #[test]

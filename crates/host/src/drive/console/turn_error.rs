@@ -8,7 +8,7 @@ use crate::Failure;
 /// A failure of the connection, the terminal or the recording.
 #[derive(Debug, thiserror::Error)]
 #[error(transparent)]
-pub enum TurnError {
+pub enum DialogueError {
     /// The connection to the board failed.
     Link(#[from] LinkError),
     /// The terminal could not be read or written.

@@ -9,7 +9,7 @@ use std::time::Duration;
 use super::stk500::{Board, Kind};
 
 /// A simulated board: its flash, and the faults to inject.
-pub struct Double {
+pub struct BoardDouble {
     /// The 32 KiB of flash; of the boot loader they hold only the first four bytes.
     pub flash: Vec<u8>,
     /// The kind of boot loader. It receives nothing at a baud rate other than its own.
@@ -49,7 +49,7 @@ pub struct Double {
     out: VecDeque<u8>,
 }
 
-impl Double {
+impl BoardDouble {
     /// A board with a chip whose flash is blank.
     pub fn blank() -> Self {
         Self::of(Kind::Optiboot, 0x7e00, [0x11, 0x24, 0x84, 0xb7])
@@ -166,7 +166,7 @@ impl Double {
     }
 }
 
-impl Board for Double {
+impl Board for BoardDouble {
     fn reset(&mut self, baud: u32) -> io::Result<()> {
         self.resets += 1;
         self.errors = 0;
@@ -180,7 +180,7 @@ impl Board for Double {
     }
 }
 
-impl Read for Double {
+impl Read for BoardDouble {
     fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
         if self.is_unplugged() {
             // EIO, as on Linux.
@@ -197,7 +197,7 @@ impl Read for Double {
     }
 }
 
-impl Write for Double {
+impl Write for BoardDouble {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         if self.is_unplugged() {
             return Err(io::Error::from_raw_os_error(5));

@@ -33,7 +33,7 @@ pub fn robot_alone(robot: &Robot) -> Result<Image, ImageError> {
 ///
 /// # Errors
 /// Fails if the file cannot be read, or is not an image for a UNO.
-pub fn read(path: &Path) -> Result<Image, Failure> {
+pub fn read_hex_image(path: &Path) -> Result<Image, Failure> {
     let name = path.display();
     let text = files::read_text(path)?;
     Image::from_hex(&text).map_err(|error| Failure::Input(format!("{name}: {error}")))
@@ -73,7 +73,7 @@ mod tests {
     fn the_error_names_a_file_that_is_not_an_image() {
         let file = tempfile::NamedTempFile::new().expect("a file");
         std::fs::write(file.path(), "[servo]\n").expect("it is written");
-        let words = read(file.path())
+        let words = read_hex_image(file.path())
             .expect_err("it is not an image")
             .to_string();
         let name = file.path().display();

@@ -8,14 +8,14 @@ use std::fmt;
 use lizard_core::numbers::mark::Mark;
 use lizard_core::numbers::section::START;
 
-use super::image::{BLANK, Image, PAGE};
+use super::image::{BLANK, Image, PAGE_BYTES};
 use crate::shared::firmware::{label, robot_in};
 
 /// The code at address 0 during an upload, alone in its page: `rjmp .-2`, a jump to itself.
-pub(super) const IDLE: [u8; 2] = [0xff, 0xcf];
+pub(super) const IDLE_JUMP: [u8; 2] = [0xff, 0xcf];
 
 /// The address of a robot's section.
-const ROBOT: usize = START as usize;
+const ROBOT_ADDRESS: usize = START as usize;
 
 /// The contents of a board's flash, compared with an image.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -34,7 +34,7 @@ pub enum Program {
     /// No program, as on a new chip.
     Blank,
     /// An incomplete program: an upload was not finished, and the chip does nothing.
-    Half,
+    Incomplete,
     /// The firmware of a lizard.
     Lizard {
         /// The version mark in the code.
@@ -63,17 +63,19 @@ pub enum RobotInFlash {
 impl FlashContents {
     /// Compares `flash`, from address 0 to the boot loader, with an image. For an image that is
     /// a robot alone, only the first page and the robot's pages were read.
-    pub fn in_flash(flash: &[u8], image: &Image) -> Self {
+    pub fn compare(flash: &[u8], image: &Image) -> Self {
         let pages = image.pages();
         let is_there = |page: &&super::image::Page| flash[page.range()] == page.bytes;
-        let code = pages.iter().filter(|page| page.address < ROBOT);
+        let code = pages.iter().filter(|page| page.address < ROBOT_ADDRESS);
         let program = match Mark::find(flash) {
             Some(mark) => Program::Lizard {
                 mark,
                 is_different: !code.clone().all(|page| is_there(&page)),
             },
-            None if flash[..2] == IDLE && is_blank(&flash[2..PAGE]) => Program::Half,
-            None if image.is_robot_alone() && is_blank(&flash[..PAGE]) => Program::Blank,
+            None if flash[..2] == IDLE_JUMP && is_blank(&flash[2..PAGE_BYTES]) => {
+                Program::Incomplete
+            }
+            None if image.is_robot_alone() && is_blank(&flash[..PAGE_BYTES]) => Program::Blank,
             None if image.is_robot_alone() => Program::Other { bytes: None },
             None => match flash.iter().rposition(|&byte| byte != BLANK) {
                 None => Program::Blank,
@@ -87,7 +89,9 @@ impl FlashContents {
         let has_image = has_code && pages.iter().all(|page| is_there(&page));
         let robot = match robot_in(flash) {
             Some(robot) => RobotInFlash::Named(label(&robot)),
-            None if is_blank(&flash[ROBOT..ROBOT + PAGE]) => RobotInFlash::None,
+            None if is_blank(&flash[ROBOT_ADDRESS..ROBOT_ADDRESS + PAGE_BYTES]) => {
+                RobotInFlash::None
+            }
             None => RobotInFlash::Damaged,
         };
         Self {
@@ -107,7 +111,7 @@ impl fmt::Display for FlashContents {
         f.write_str("the board has ")?;
         match self.program {
             Program::Blank => f.write_str("no program")?,
-            Program::Half => f.write_str("half a program, which does nothing")?,
+            Program::Incomplete => f.write_str("half a program, which does nothing")?,
             Program::Other { .. } if self.has_image => f.write_str("this program")?,
             Program::Other { bytes: None } => f.write_str("another program")?,
             Program::Other { bytes: Some(bytes) } => {
@@ -136,17 +140,17 @@ mod tests {
 
     use super::*;
     use crate::drive::flash::file;
-    use crate::drive::flash::image::BOOT;
+    use crate::drive::flash::image::BOOT_ADDRESS;
 
     #[test]
     fn flash_is_blank_or_has_an_incomplete_or_another_program() {
         let image = Image::new(vec![1, 2, 3]).expect("it fits");
         let text = |changes: &[(usize, u8)]| {
-            let mut flash = vec![0xff; BOOT];
+            let mut flash = vec![0xff; BOOT_ADDRESS];
             for (address, byte) in changes {
                 flash[*address] = *byte;
             }
-            FlashContents::in_flash(&flash, &image).to_string()
+            FlashContents::compare(&flash, &image).to_string()
         };
         assert_eq!(text(&[]), "the board has no program");
         assert_eq!(
@@ -169,10 +173,10 @@ mod tests {
         let image = file::image(&paper).expect("it fits");
         let alone = file::robot_alone(&paper).expect("it fits");
         let mut flash = image.bytes().to_vec();
-        flash.resize(BOOT, 0xff);
+        flash.resize(BOOT_ADDRESS, 0xff);
         let lizard = format!("the board has lizard {}", env!("CARGO_PKG_VERSION"));
         let describe = |robot: &Robot| format!("{lizard} robot {}", label(robot.firmware()));
-        let text = |flash: &[u8], image: &Image| FlashContents::in_flash(flash, image).to_string();
+        let text = |flash: &[u8], image: &Image| FlashContents::compare(flash, image).to_string();
         assert_eq!(
             text(&flash, &image),
             format!("{} already", describe(&paper))
@@ -188,12 +192,12 @@ mod tests {
         sketch[..1000].fill(0x95);
         assert_eq!(text(&sketch, &alone), "the board has another program");
         let mut damaged = flash.clone();
-        damaged[ROBOT + 100] ^= 1;
+        damaged[ROBOT_ADDRESS + 100] ^= 1;
         assert_eq!(
             text(&damaged, &image),
             format!("{lizard} with a damaged robot")
         );
-        damaged[ROBOT..].fill(0xff);
+        damaged[ROBOT_ADDRESS..].fill(0xff);
         assert_eq!(text(&damaged, &image), format!("{lizard} without a robot"));
         let mut build = flash;
         build[0x1000] ^= 1;

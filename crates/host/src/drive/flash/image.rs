@@ -9,12 +9,12 @@ use ihex::Record;
 use lizard_core::numbers::section::START;
 
 /// Bytes of a page, which the chip writes at once (ATmega328P data sheet, table 27-7: 64 words).
-pub const PAGE: usize = 128;
+pub const PAGE_BYTES: usize = 128;
 /// The address of a UNO's boot loader.
-pub const BOOT: usize = 0x7e00;
+pub const BOOT_ADDRESS: usize = 0x7e00;
 /// The address of a Nano's boot section (the fuses of Arduino's boards.txt: 2 KB). The chip
 /// starts there, even if the boot loader is shorter.
-pub const NANO_BOOT: usize = 0x7800;
+pub const NANO_BOOT_ADDRESS: usize = 0x7800;
 /// The value of an erased byte of flash.
 pub const BLANK: u8 = 0xff;
 
@@ -30,9 +30,12 @@ pub struct Image {
 }
 
 /// The address of a robot's section.
-const ROBOT: usize = START as usize;
+const ROBOT_ADDRESS: usize = START as usize;
 
-const _: () = assert!(ROBOT.is_multiple_of(PAGE), "code and robot share no page");
+const _: () = assert!(
+    ROBOT_ADDRESS.is_multiple_of(PAGE_BYTES),
+    "code and robot share no page"
+);
 
 /// A page of flash that an image fills completely or in part.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -40,7 +43,7 @@ pub struct Page {
     /// The address of its first byte.
     pub address: usize,
     /// The page's bytes; [`BLANK`] outside the image.
-    pub bytes: [u8; PAGE],
+    pub bytes: [u8; PAGE_BYTES],
 }
 
 /// The reason why bytes are no valid image.
@@ -53,8 +56,8 @@ pub enum ImageError {
     #[error("there is no robot")]
     NoRobot,
     /// The image reaches into the boot loader.
-    #[error("the firmware has {0} bytes; {BOOT} fit before the boot loader")]
-    Long(usize),
+    #[error("the firmware has {0} bytes; {BOOT_ADDRESS} fit before the boot loader")]
+    TooLong(usize),
     /// A line is not Intel HEX.
     #[error("line {line} is not Intel HEX: {reason}")]
     Line {
@@ -77,7 +80,7 @@ pub enum ImageError {
     /// A line has data at or beyond the boot loader, which cannot write itself.
     #[error(
         "line {line} is for address {address:#06x}; the boot loader, which is never written, \
-         begins at {BOOT:#06x}"
+         begins at {BOOT_ADDRESS:#06x}"
     )]
     BootLoader {
         /// The line's number, counted from 1.
@@ -101,8 +104,8 @@ impl Image {
     pub fn new(bytes: Vec<u8>) -> Result<Self, ImageError> {
         match bytes.len() {
             0 => Err(ImageError::NoStart),
-            1..=BOOT => Ok(Self { start: 0, bytes }),
-            long => Err(ImageError::Long(long)),
+            1..=BOOT_ADDRESS => Ok(Self { start: 0, bytes }),
+            long => Err(ImageError::TooLong(long)),
         }
     }
 
@@ -111,11 +114,11 @@ impl Image {
     /// # Errors
     /// Fails if it has no bytes, or too many.
     pub fn robot_alone(section: Vec<u8>) -> Result<Self, ImageError> {
-        match ROBOT + section.len() {
-            ROBOT => Err(ImageError::NoRobot),
-            end if end > BOOT => Err(ImageError::Long(end)),
+        match ROBOT_ADDRESS + section.len() {
+            ROBOT_ADDRESS => Err(ImageError::NoRobot),
+            end if end > BOOT_ADDRESS => Err(ImageError::TooLong(end)),
             _ => Ok(Self {
-                start: ROBOT,
+                start: ROBOT_ADDRESS,
                 bytes: section,
             }),
         }
@@ -123,7 +126,7 @@ impl Image {
 
     /// True if the image has no code.
     pub fn is_robot_alone(&self) -> bool {
-        self.start == ROBOT
+        self.start == ROBOT_ADDRESS
     }
 
     /// Reads Intel HEX.
@@ -132,7 +135,7 @@ impl Image {
     /// Fails if the text is not complete Intel HEX, contradicts itself, has no code at address 0,
     /// or reaches into the boot loader.
     pub fn from_hex(text: &str) -> Result<Self, ImageError> {
-        let mut flash = vec![None; BOOT];
+        let mut flash = vec![None; BOOT_ADDRESS];
         let mut base = 0;
         let mut ended = false;
         for (index, record) in text.lines().map(str::trim).enumerate() {
@@ -145,7 +148,7 @@ impl Image {
             match record {
                 Record::Data { offset, value } => {
                     let start = base + usize::from(offset);
-                    put(&mut flash, start, &value, line)?;
+                    put_record(&mut flash, start, &value, line)?;
                 }
                 Record::EndOfFile => ended = true,
                 Record::ExtendedLinearAddress(upper) => base = usize::from(upper) << 16,
@@ -195,23 +198,27 @@ impl Image {
     /// The image's pages in the order of their addresses.
     pub fn pages(&self) -> Vec<Page> {
         let page = |(index, part): (usize, &[u8])| {
-            let mut bytes = [BLANK; PAGE];
+            let mut bytes = [BLANK; PAGE_BYTES];
             bytes[..part.len()].copy_from_slice(part);
-            let address = self.start + index * PAGE;
+            let address = self.start + index * PAGE_BYTES;
             Page { address, bytes }
         };
-        self.bytes.chunks(PAGE).enumerate().map(page).collect()
+        self.bytes
+            .chunks(PAGE_BYTES)
+            .enumerate()
+            .map(page)
+            .collect()
     }
 }
 
 impl Page {
     /// The addresses of the page in flash.
     pub fn range(&self) -> Range<usize> {
-        self.address..self.address + PAGE
+        self.address..self.address + PAGE_BYTES
     }
 }
 
-fn put(
+fn put_record(
     flash: &mut [Option<u8>],
     start: usize,
     bytes: &[u8],

@@ -30,13 +30,13 @@ use crate::drive::console::info;
 use crate::drive::console::link::{self, Link};
 use crate::drive::console::port::BAUD;
 use crate::shared::json;
-use crate::shared::progress::bar;
+use crate::shared::progress::progress_bar;
 use crate::{Failure, RobotFile};
-use image::{Image, PAGE};
+use image::{Image, PAGE_BYTES};
 use serial_board::SerialBoard;
 use stk500::{Loader, Timeouts};
 use target::{Model, Target};
-use upload::{Done, Event, Step};
+use upload::{Event, PageCounts, Step};
 
 /// Write the firmware with your robot to a UNO or a Nano on USB
 ///
@@ -85,7 +85,7 @@ struct Flashed {
 /// afterwards. After a failed upload, the message says what the flash holds.
 pub fn run(args: Args) -> Result<(), Failure> {
     let image = match &args.image {
-        Some(path) => file::read(path)?,
+        Some(path) => file::read_hex_image(path)?,
         None if args.only_robot => file::robot_alone(&args.robot.load()?)?,
         None => file::image(&args.robot.load()?)?,
     };
@@ -114,8 +114,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let (firmware, robot) = info::parse_banner(&banner);
     let flashed = Flashed {
         port,
-        bytes_written: done.written * PAGE,
-        bytes_kept: done.kept * PAGE,
+        bytes_written: done.written * PAGE_BYTES,
+        bytes_kept: done.kept * PAGE_BYTES,
         firmware,
         robot,
     };
@@ -150,13 +150,13 @@ fn write(
     image: &Image,
     target: Target,
     json: bool,
-) -> Result<(SerialBoard, Done), Failure> {
+) -> Result<(SerialBoard, PageCounts), Failure> {
     // A closed standard output does not stop the upload.
     let println = |line: &str| match json {
         true => eprintln!("{line}"),
         false => _ = writeln!(io::stdout(), "{line}"),
     };
-    let bar = bar(0, "{msg} {wide_bar} {percent} %");
+    let bar = progress_bar(0, "{msg} {wide_bar} {percent} %");
     let mut loader = Loader::new(board, Timeouts::default());
     let start = Instant::now();
     let done = upload::upload(&mut loader, image, target, &mut |event| match event {
@@ -190,8 +190,8 @@ fn write(
 }
 
 /// A message about a finished upload.
-fn summary(done: Done, time: Duration) -> String {
-    let [written, kept] = [done.written, done.kept].map(|pages| pages * PAGE);
+fn summary(done: PageCounts, time: Duration) -> String {
+    let [written, kept] = [done.written, done.kept].map(|pages| pages * PAGE_BYTES);
     let seconds = time.as_secs_f64();
     match written {
         0 => format!("nothing to write: all {kept} bytes are right; {seconds:.1} s"),
@@ -216,7 +216,7 @@ mod tests {
     fn the_summary_counts_bytes() {
         let words = |written, kept| {
             let time = Duration::from_millis(1240);
-            summary(Done { written, kept }, time)
+            summary(PageCounts { written, kept }, time)
         };
         assert_eq!(
             words(2, 210),

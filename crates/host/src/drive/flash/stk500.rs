@@ -13,7 +13,7 @@
 use std::io::{self, ErrorKind, Read, Write};
 use std::time::Duration;
 
-use super::image::{BOOT, NANO_BOOT, PAGE};
+use super::image::{BOOT_ADDRESS, NANO_BOOT_ADDRESS, PAGE_BYTES};
 use crate::drive::clock::Deadline;
 use crate::drive::console::link::is_gone;
 
@@ -29,7 +29,7 @@ const READ_SIGNATURE: u8 = 0x75;
 /// The memory type in commands that read or write a page.
 const FLASH: u8 = b'F';
 /// Largest number of requests to synchronise ("calls") after one reset.
-const CALLS: usize = 5;
+const MAX_CALLS: usize = 5;
 
 /// A kind of boot loader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,8 +53,8 @@ impl Kind {
     /// The address of the loader's first byte in flash.
     pub fn start(self) -> usize {
         match self {
-            Self::Optiboot => BOOT,
-            Self::AtmegaBoot => NANO_BOOT,
+            Self::Optiboot => BOOT_ADDRESS,
+            Self::AtmegaBoot => NANO_BOOT_ADDRESS,
         }
     }
 }
@@ -78,7 +78,7 @@ pub struct Timeouts {
     /// Time for the answer to one call.
     pub call: Duration,
     /// Time after the first answer in which late answers to earlier calls are discarded.
-    pub quiet: Duration,
+    pub drain_time: Duration,
     /// Time for an answer to any other command. Writing a page takes about 20 ms, but a busy
     /// machine may pass the bytes on a second later.
     pub answer: Duration,
@@ -89,7 +89,7 @@ impl Default for Timeouts {
         Self {
             blink_time: Duration::from_millis(400),
             call: Duration::from_millis(110),
-            quiet: Duration::from_millis(40),
+            drain_time: Duration::from_millis(40),
             answer: Duration::from_secs(2),
         }
     }
@@ -155,11 +155,11 @@ impl<B: Board> Loader<B> {
     pub fn call(&mut self, kind: Kind) -> Result<(), LoaderError> {
         self.board.reset(kind.baud())?;
         // The last output of the program that ran before the reset also arrives in this time.
-        self.skip(self.timeouts.blink_time)?;
-        for _ in 0..CALLS {
+        self.discard_input(self.timeouts.blink_time)?;
+        for _ in 0..MAX_CALLS {
             self.board.write_all(&[GET_SYNC, CRC_EOP])?;
             if self.wait_for_sync(self.timeouts.call)? {
-                return self.skip(self.timeouts.quiet);
+                return self.discard_input(self.timeouts.drain_time);
             }
         }
         Err(LoaderError::Silent)
@@ -179,10 +179,10 @@ impl<B: Board> Loader<B> {
     ///
     /// # Errors
     /// See [`LoaderError`].
-    pub fn read_page(&mut self, address: usize) -> Result<[u8; PAGE], LoaderError> {
-        self.go_to(address)?;
-        let mut page = [0; PAGE];
-        self.command(&[READ_PAGE, 0, PAGE as u8, FLASH], &mut page)?;
+    pub fn read_page(&mut self, address: usize) -> Result<[u8; PAGE_BYTES], LoaderError> {
+        self.set_address(address)?;
+        let mut page = [0; PAGE_BYTES];
+        self.command(&[READ_PAGE, 0, PAGE_BYTES as u8, FLASH], &mut page)?;
         Ok(page)
     }
 
@@ -190,9 +190,13 @@ impl<B: Board> Loader<B> {
     ///
     /// # Errors
     /// See [`LoaderError`].
-    pub fn write_page(&mut self, address: usize, page: &[u8; PAGE]) -> Result<(), LoaderError> {
-        self.go_to(address)?;
-        let head = [PROGRAM_PAGE, 0, PAGE as u8, FLASH];
+    pub fn write_page(
+        &mut self,
+        address: usize,
+        page: &[u8; PAGE_BYTES],
+    ) -> Result<(), LoaderError> {
+        self.set_address(address)?;
+        let head = [PROGRAM_PAGE, 0, PAGE_BYTES as u8, FLASH];
         self.command(&[head.as_slice(), page].concat(), &mut [])
     }
 
@@ -205,7 +209,7 @@ impl<B: Board> Loader<B> {
     }
 
     /// Sets the address of the next page. The protocol counts it in words of two bytes.
-    fn go_to(&mut self, address: usize) -> Result<(), LoaderError> {
+    fn set_address(&mut self, address: usize) -> Result<(), LoaderError> {
         let [low, high] = ((address / 2) as u16).to_le_bytes();
         self.command(&[LOAD_ADDRESS, low, high], &mut [])
     }
@@ -214,11 +218,11 @@ impl<B: Board> Loader<B> {
     fn command(&mut self, bytes: &[u8], answer: &mut [u8]) -> Result<(), LoaderError> {
         self.board.write_all(&[bytes, &[CRC_EOP]].concat())?;
         let mut end = Deadline::after(self.timeouts.answer);
-        if self.byte(&mut end)? != IN_SYNC {
+        if self.read_byte(&mut end)? != IN_SYNC {
             return Err(LoaderError::Garbled);
         }
         self.read_exact(answer, &mut end)?;
-        if self.byte(&mut end)? != OK {
+        if self.read_byte(&mut end)? != OK {
             return Err(LoaderError::Garbled);
         }
         Ok(())
@@ -229,7 +233,7 @@ impl<B: Board> Loader<B> {
         let mut end = Deadline::after(time);
         let mut last = 0;
         loop {
-            let byte = match self.byte(&mut end) {
+            let byte = match self.read_byte(&mut end) {
                 Err(LoaderError::Silent) => return Ok(false),
                 byte => byte?,
             };
@@ -245,7 +249,7 @@ impl<B: Board> Loader<B> {
     }
 
     /// Waits for the given time and discards all bytes received meanwhile.
-    fn skip(&mut self, time: Duration) -> Result<(), LoaderError> {
+    fn discard_input(&mut self, time: Duration) -> Result<(), LoaderError> {
         let mut end = Deadline::after(time);
         let mut bytes = [0; 256];
         loop {
@@ -256,7 +260,7 @@ impl<B: Board> Loader<B> {
         }
     }
 
-    fn byte(&mut self, end: &mut Deadline) -> Result<u8, LoaderError> {
+    fn read_byte(&mut self, end: &mut Deadline) -> Result<u8, LoaderError> {
         let mut byte = [0];
         self.read_exact(&mut byte, end)?;
         Ok(byte[0])

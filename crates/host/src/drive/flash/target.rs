@@ -6,7 +6,7 @@
 //! that. No boot loader reports its fuses. An old Nano is recognised by its speed; a newer one talks like a UNO,
 //! and only its USB chip may tell.
 
-use super::image::{BOOT, Image, NANO_BOOT};
+use super::image::{BOOT_ADDRESS, Image, NANO_BOOT_ADDRESS};
 use super::stk500::Kind;
 
 /// A board that a user names.
@@ -29,7 +29,7 @@ pub struct Target {
 
 /// The error for an image that reaches into the boot section of a Nano, or of a board that may be one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("{} bytes of flash are needed, and a Nano has {NANO_BOOT} before its boot section{}. \
+#[error("{} bytes of flash are needed, and a Nano has {NANO_BOOT_ADDRESS} before its boot section{}. \
          Nothing was written", .end, if *.in_doubt {
     "; this board may be one, because of its USB chip. If it is a UNO, say so: --board uno"
 } else {
@@ -58,7 +58,11 @@ impl Target {
     pub fn check_room(self, image: &Image, loader: Kind) -> Result<(), TooLong> {
         let is_nano = self.model == Some(Model::Nano) || loader == Kind::AtmegaBoot;
         let in_doubt = !is_nano && self.model.is_none() && self.may_be_nano;
-        let room = if is_nano || in_doubt { NANO_BOOT } else { BOOT };
+        let room = if is_nano || in_doubt {
+            NANO_BOOT_ADDRESS
+        } else {
+            BOOT_ADDRESS
+        };
         let end = image.end();
         if end > room {
             return Err(TooLong { end, in_doubt });

@@ -21,7 +21,7 @@ const RIM: f64 = 0.6;
 /// A page onto which the robot is drawn.
 pub struct Sheet<At> {
     /// The projection from mm in the chassis frame to the page.
-    pub at: At,
+    pub project: At,
     /// The length of 1 mm on the page.
     pub scale: f64,
     /// The robot's turn on the page, deg counter-clockwise.
@@ -31,7 +31,12 @@ pub struct Sheet<At> {
 impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
     /// A bar between two points, `mm` millimetres wide.
     pub fn bar(&self, from: Vector, to: Vector, colour: &str, mm: f64) -> Line {
-        line((self.at)(from), (self.at)(to), colour, mm * self.scale)
+        line(
+            (self.project)(from),
+            (self.project)(to),
+            colour,
+            mm * self.scale,
+        )
     }
 
     /// A joint: a white disc with a radius of `mm` millimetres.
@@ -42,7 +47,7 @@ impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
     /// A disc with an edge and a radius of `mm` millimetres.
     pub fn disc(&self, point: Vector, mm: f64, fill: &str) -> Circle {
         edged(
-            circle((self.at)(point), mm * self.scale, fill),
+            circle((self.project)(point), mm * self.scale, fill),
             DARK,
             0.6 * self.scale,
         )
@@ -50,7 +55,7 @@ impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
 
     /// A rectangle that turns with the robot, given by its centre, half its size and the radius of its corners, mm.
     fn rectangle(&self, middle: Vector, half: Vector, corner: f64, fill: &str) -> Group {
-        let (x, y) = (self.at)(middle);
+        let (x, y) = (self.project)(middle);
         let [wide, long] = [half.x, half.y].map(|half| half * self.scale);
         let shape = rectangle((x - wide, y - long), (2.0 * wide, 2.0 * long), fill)
             .set("rx", fixed(corner * self.scale));
@@ -65,7 +70,7 @@ impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
     }
 
     /// Adds the parts of the legs beside and below the plate to `group`; `pads` are the colours of the feet.
-    pub fn feet(&self, mut group: Group, legs: &[LegPlace; 4], pads: [&str; 4]) -> Group {
+    pub fn draw_feet(&self, mut group: Group, legs: &[LegPlace; 4], pads: [&str; 4]) -> Group {
         for (i, leg) in legs.iter().enumerate() {
             let [driven, idle] = leg.joints;
             group = group
@@ -94,7 +99,12 @@ impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
     }
 
     /// Adds the parts of the legs above the plate, and the servo arms that drive their struts, to `group`.
-    pub fn cranks(&self, mut group: Group, shafts: [Vector; 4], legs: &[LegPlace; 4]) -> Group {
+    pub fn draw_cranks(
+        &self,
+        mut group: Group,
+        shafts: [Vector; 4],
+        legs: &[LegPlace; 4],
+    ) -> Group {
         for (i, leg) in legs.iter().enumerate() {
             let [link, crank] = leg.strut;
             group = group.add(self.bar(leg.pivots[0], crank, SERVO[i], 3.2));
@@ -113,7 +123,7 @@ impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
     }
 
     /// Adds the screws that hold the struts to the servo arms. They lie above all other parts.
-    pub fn anchors(&self, group: Group, legs: &[LegPlace; 4]) -> Group {
+    pub fn draw_anchors(&self, group: Group, legs: &[LegPlace; 4]) -> Group {
         let screws = legs.iter().map(|leg| self.joint(leg.strut[0], 1.2));
         screws.fold(group, Group::add)
     }

@@ -21,7 +21,7 @@ const ROOM: (f64, f64) = (250.0, 476.0);
 /// Teeth of an SG-90's spline.
 const TEETH: usize = 25;
 /// Angle from a tooth to the next, deg.
-const TOOTH: f64 = 360.0 / TEETH as f64;
+const TOOTH_PITCH_DEG: f64 = 360.0 / TEETH as f64;
 
 /// The centre of the enlarged spline.
 const SPLINE: (f64, f64) = (558.0, 158.0);
@@ -31,7 +31,7 @@ const RADII: (f64, f64) = (52.0, 62.0);
 const CRANK: f64 = 150.0;
 
 /// The error in the example: the crank sits this many degrees clockwise of its correct angle.
-const EXAMPLE: f64 = 6.0;
+const EXAMPLE_ERROR_DEG: f64 = 6.0;
 
 /// Width and length of an SG-90 from above, mm.
 const BODY: (f64, f64) = (12.2, 22.8);
@@ -180,15 +180,15 @@ fn example(robot: &Robot) -> Group {
     const LEFT: f64 = 404.0;
     let servo = 0;
     let exact = robot.servos()[servo].neutral;
-    let placed = exact - EXAMPLE;
+    let placed = exact - EXAMPLE_ERROR_DEG;
     let number = servo + 1;
     let lines = [
-        format!("{TEETH} teeth, {TOOTH}° apart. On the best"),
-        format!("one a crank is off by {}° at most.", TOOTH / 2.0),
+        format!("{TEETH} teeth, {TOOTH_PITCH_DEG}° apart. On the best"),
+        format!("one a crank is off by {}° at most.", TOOTH_PITCH_DEG / 2.0),
         String::new(),
         "Dashed: the angle where it should be.".into(),
-        format!("Grey: it sits {EXAMPLE}° clockwise of that."),
-        format!("trim {number} {EXAMPLE}"),
+        format!("Grey: it sits {EXAMPLE_ERROR_DEG}° clockwise of that."),
+        format!("trim {number} {EXAMPLE_ERROR_DEG}"),
         "turns it there: + counter-clockwise,".into(),
         "\u{2212} clockwise, seen from above.".into(),
     ];
@@ -217,7 +217,7 @@ fn example(robot: &Robot) -> Group {
             14.0,
         ))
         // The width of a tooth, marked on the side that is free.
-        .add(tooth(placed - 9.0 * TOOTH));
+        .add(tooth(placed - 9.0 * TOOTH_PITCH_DEG));
     for (index, words) in lines.iter().enumerate() {
         let point = (LEFT, SPLINE.1 + 102.0 + 19.0 * index as f64);
         let mut line = text_start(words, point, 14.0);
@@ -235,7 +235,7 @@ fn spline(degrees: f64) -> Polygon {
         .map(|corner| {
             // Two corners at a tooth's tip, two between teeth.
             let radius = if corner % 4 < 2 { RADII.1 } else { RADII.0 };
-            let degrees_of_corner = degrees + TOOTH / 4.0 * (corner as f64 - 0.5);
+            let degrees_of_corner = degrees + TOOTH_PITCH_DEG / 4.0 * (corner as f64 - 0.5);
             let (x, y) = point_toward(SPLINE, degrees_of_corner, radius);
             format!("{},{}", fixed(x), fixed(y))
         })
@@ -259,13 +259,19 @@ fn tooth(degrees: f64) -> Group {
             1.2,
         )
     };
-    let words = point_toward(SPLINE, degrees + TOOTH / 2.0, far + 3.0);
+    let words = point_toward(SPLINE, degrees + TOOTH_PITCH_DEG / 2.0, far + 3.0);
     Group::new()
         .add(ray(degrees))
-        .add(ray(degrees + TOOTH))
-        .add(arc(SPLINE, far - 7.0, degrees, degrees + TOOTH, DARK))
+        .add(ray(degrees + TOOTH_PITCH_DEG))
+        .add(arc(
+            SPLINE,
+            far - 7.0,
+            degrees,
+            degrees + TOOTH_PITCH_DEG,
+            DARK,
+        ))
         .add(text_start(
-            &format!("{TOOTH}°"),
+            &format!("{TOOTH_PITCH_DEG}°"),
             (words.0, words.1 + 5.0),
             14.0,
         ))

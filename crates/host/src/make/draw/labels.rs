@@ -4,7 +4,7 @@ use lizard_kinematics::{Vector, sin_cos};
 use lizard_robot::servo::NAMES;
 use svg::node::element::Group;
 
-use super::top_view::{Joint, NAME_BEYOND, SIZE, SKIN_BEYOND, View};
+use super::top_view::{Joint, NAME_BEYOND, SIZE, SKIN_REACH, View};
 use crate::shared::ink::{
     Anchor, DARK, GREY, SERVO, line, pin_name, text, text_middle, text_start,
 };
@@ -26,7 +26,7 @@ impl View<'_> {
                 SIZE.0 / 2.0 + side * NAMES_AT,
                 SIZE.1 / 2.0 - sign * NAMES_AT,
             );
-            let toward = self.page(shaft + Vector::new(side * 3.5, sign * 2.0));
+            let toward = self.page_point(shaft + Vector::new(side * 3.5, sign * 2.0));
             let name = format!(
                 "{} · {}",
                 NAMES[servo],
@@ -55,9 +55,9 @@ impl View<'_> {
             format!("{name} ({:.1}, {:.1}) mm", position.x, position.y)
         };
         let (x, y) =
-            self.page(head + Vector::new(0.0, SKIN_BEYOND * self.size_ratio() + NAME_BEYOND));
+            self.page_point(head + Vector::new(0.0, SKIN_REACH * self.size_ratio() + NAME_BEYOND));
         group = group.add(text_middle(&coordinates("head", head), (x, y), 18.0));
-        let (x, y) = self.page(tail + Vector::new(0.0, -26.0 * self.size_ratio() - 8.0));
+        let (x, y) = self.page_point(tail + Vector::new(0.0, -26.0 * self.size_ratio() - 8.0));
         group = group.add(text_middle(&coordinates("tail", tail), (x, y), 18.0));
         for (side, slider) in [(-1.0, solution.left), (1.0, solution.right)] {
             let anchor = if side < 0.0 {
@@ -65,7 +65,7 @@ impl View<'_> {
             } else {
                 Anchor::Start
             };
-            let (x, y) = self.page(Vector::new(side * 50.0 * self.size_ratio(), 0.0));
+            let (x, y) = self.page_point(Vector::new(side * 50.0 * self.size_ratio(), 0.0));
             let travel = if slider.s.abs() < 0.05 {
                 "s = 0.0 mm".to_owned()
             } else {
@@ -83,7 +83,7 @@ impl View<'_> {
             } else {
                 Anchor::Start
             };
-            let (x, y) = self.page(foot + Vector::new(side * 24.0, -2.0));
+            let (x, y) = self.page_point(foot + Vector::new(side * 24.0, -2.0));
             let name = [
                 "front left foot",
                 "front right foot",

@@ -36,14 +36,14 @@ pub fn between_rows(from: &[(f64, f64)], to: &[(f64, f64)], height: f64) -> Vec<
 
 /// The last part of a path that runs down the right side of a board and then to a pin in the
 /// board's lower row; `index` counts such wires from the board outwards.
-pub fn below(corner: (f64, f64), index: usize, pin: (f64, f64)) -> Path {
-    let (x, y) = beside(corner, index);
+pub fn route_end(corner: (f64, f64), index: usize, pin: (f64, f64)) -> Path {
+    let (x, y) = turn_point(corner, index);
     vec![(x, y), (pin.0, y), pin]
 }
 
 /// The point near a board's lower right corner (`corner`) where a wire to the lower row of pins
 /// turns; `index` counts such wires from the board outwards.
-pub fn beside(corner: (f64, f64), index: usize) -> (f64, f64) {
+pub fn turn_point(corner: (f64, f64), index: usize) -> (f64, f64) {
     let offset = GAP * (index as f64 + 1.0);
     (corner.0 + offset, corner.1 + offset)
 }

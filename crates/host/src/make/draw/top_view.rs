@@ -13,7 +13,7 @@ const PIXELS_PER_MM: f64 = 3.1;
 /// Margins of the page in x and y for names and measures, pixels.
 const MARGIN: (f64, f64) = (80.0, 28.0);
 /// Reach of the skin beyond the head point, mm. Its reach beyond the tail point is smaller.
-pub(super) const SKIN_BEYOND: f64 = 30.0;
+pub(super) const SKIN_REACH: f64 = 30.0;
 /// Distance from the skin to its label, mm.
 pub(super) const NAME_BEYOND: f64 = 6.0;
 /// Half the length of the plate that the skin's coordinates fit, mm.
@@ -31,16 +31,16 @@ pub fn top_view(robot: &Robot, solution: &Solution, has_labels: bool) -> String 
     let view = View::new(robot, solution);
     let mut group = view.draw_skin(Group::new());
     let (legs, sheet) = (view.legs(), view.sheet());
-    group = sheet.feet(group, &legs, [DARK; 4]);
+    group = sheet.draw_feet(group, &legs, [DARK; 4]);
     group = sheet.draw_plate(group, &robot.plate());
-    group = sheet.cranks(group, view.shafts(), &legs);
+    group = sheet.draw_cranks(group, view.shafts(), &legs);
     for side in Side::ALL {
         group = view.draw_slider(group, side);
     }
     for end in End::ALL {
         group = view.draw_five_bar(group, end);
     }
-    group = sheet.anchors(group, &legs);
+    group = sheet.draw_anchors(group, &legs);
     if has_labels {
         group = view.labels(group);
     }
@@ -64,11 +64,11 @@ impl<'a> View<'a> {
         };
         let legs = view.legs();
         let joints = legs.iter().flat_map(|leg| leg.joints);
-        let wide = joints.map(|joint| joint.x.abs()).fold(1.0, f64::max);
+        let max_x = joints.map(|joint| joint.x.abs()).fold(1.0, f64::max);
         let ends = [solution.head_point(), solution.tail_point()];
-        let beyond = SKIN_BEYOND * view.size_ratio() + NAME_BEYOND;
-        let long = ends.map(|end| end.y.abs()).into_iter().fold(1.0, f64::max) + beyond;
-        let scales = [(SIZE.0, MARGIN.0, wide), (SIZE.1, MARGIN.1, long)];
+        let beyond = SKIN_REACH * view.size_ratio() + NAME_BEYOND;
+        let max_y = ends.map(|end| end.y.abs()).into_iter().fold(1.0, f64::max) + beyond;
+        let scales = [(SIZE.0, MARGIN.0, max_x), (SIZE.1, MARGIN.1, max_y)];
         let scales = scales.map(|(page, margin, mm)| (page / 2.0 - margin) / mm);
         Self {
             scale: scales.into_iter().fold(PIXELS_PER_MM, f64::min),
@@ -77,7 +77,7 @@ impl<'a> View<'a> {
     }
 
     /// The point on the page for a point in the chassis frame.
-    pub(super) fn page(&self, joint: Joint) -> (f64, f64) {
+    pub(super) fn page_point(&self, joint: Joint) -> (f64, f64) {
         (
             SIZE.0 / 2.0 + self.scale * joint.x,
             SIZE.1 / 2.0 - self.scale * joint.y,
@@ -91,7 +91,7 @@ impl<'a> View<'a> {
 
     fn sheet(&self) -> Sheet<impl Fn(Joint) -> (f64, f64)> {
         Sheet {
-            at: |joint| self.page(joint),
+            project: |joint| self.page_point(joint),
             scale: self.scale,
             turn: 0.0,
         }
@@ -124,7 +124,7 @@ impl<'a> View<'a> {
         // their points, and the flanks (`at`) are fixed to the chassis.
         let grown = self.size_ratio();
         let around = |point: Joint, x: f64, y: f64| {
-            let (x, y) = self.page(point + Vector::new(x, y) * grown);
+            let (x, y) = self.page_point(point + Vector::new(x, y) * grown);
             format!("{x:.1} {y:.1}")
         };
         let at = |x: f64, y: f64| around(Vector::default(), x, y);
@@ -171,7 +171,13 @@ impl<'a> View<'a> {
             ),
         ];
         let outline = Path::new().set("d", d.join(" ")).set("fill", SKIN);
-        let eye = |x: f64| circle(self.page(head + Vector::new(x, 12.0) * grown), 6.5, DARK);
+        let eye = |x: f64| {
+            circle(
+                self.page_point(head + Vector::new(x, 12.0) * grown),
+                6.5,
+                DARK,
+            )
+        };
         group.add(outline).add(eye(-9.0)).add(eye(9.0))
     }
 
@@ -214,11 +220,11 @@ impl<'a> View<'a> {
             group = group
                 .add(self.bar(shaft, tip, SERVO[servo], 4.6))
                 .add(self.pivot(tip, 2.3))
-                .add(circle(self.page(shaft), 3.4 * self.scale, DARK))
-                .add(circle(self.page(shaft), 1.2 * self.scale, "white"));
+                .add(circle(self.page_point(shaft), 3.4 * self.scale, DARK))
+                .add(circle(self.page_point(shaft), 1.2 * self.scale, "white"));
         }
         group.add(edged(
-            circle(self.page(point), 3.4 * self.scale, "#f0e442"),
+            circle(self.page_point(point), 3.4 * self.scale, "#f0e442"),
             DARK,
             2.5,
         ))
@@ -313,7 +319,7 @@ mod tests {
             .collect::<Vec<_>>();
         joints.extend([solution.head_point(), solution.tail_point()]);
         for joint in joints {
-            let (x, y) = view.page(joint);
+            let (x, y) = view.page_point(joint);
             assert!((50.0..SIZE.0 - 50.0).contains(&x), "{x}");
             assert!((50.0..SIZE.1 - 50.0).contains(&y), "{y}");
         }

@@ -42,27 +42,27 @@ pub struct Uno {
 impl Uno {
     /// The board's lower right corner.
     pub fn far_corner(&self) -> (f64, f64) {
-        self.at(BOARD.0, 0.0)
+        self.page_point(BOARD.0, 0.0)
     }
 
     /// Position of a pin by its Arduino number, 0 to 19; 14 to 19 are A0 to A5.
     pub fn pin(&self, number: u8) -> (f64, f64) {
         let n = f64::from(number);
         match number {
-            0..=7 => self.at(D7 + 7.0 - n, UPPER_ROW),
-            8..=13 => self.at(D13 + 13.0 - n, UPPER_ROW),
-            _ => self.at(A0 + n - 14.0, LOWER_ROW),
+            0..=7 => self.page_point(D7 + 7.0 - n, UPPER_ROW),
+            8..=13 => self.page_point(D13 + 13.0 - n, UPPER_ROW),
+            _ => self.page_point(A0 + n - 14.0, LOWER_ROW),
         }
     }
 
     /// Position of the ground pin beside D13.
     pub fn ground(&self) -> (f64, f64) {
-        self.at(D13 - 1.0, UPPER_ROW)
+        self.page_point(D13 - 1.0, UPPER_ROW)
     }
 
     /// Position of the 5V pin.
     pub fn five_volts(&self) -> (f64, f64) {
-        self.at(POWER.0 + 3.0, LOWER_ROW)
+        self.page_point(POWER.0 + 3.0, LOWER_ROW)
     }
 
     /// Draws the board, with the pins of `used` emphasised.
@@ -83,7 +83,7 @@ impl Uno {
                 .add(self.label(self.pin(number), &name, is_used));
         }
         for (index, name) in REFERENCES.1.iter().enumerate() {
-            let point = self.at(REFERENCES.0 + index as f64, UPPER_ROW);
+            let point = self.page_point(REFERENCES.0 + index as f64, UPPER_ROW);
             let is_used = point == self.ground();
             let mut hole = hole(point, is_used);
             if is_used {
@@ -92,12 +92,12 @@ impl Uno {
             group = group.add(hole).add(self.label(point, name, is_used));
         }
         for (index, name) in POWER.1.iter().enumerate() {
-            let point = self.at(POWER.0 + index as f64, LOWER_ROW);
+            let point = self.page_point(POWER.0 + index as f64, LOWER_ROW);
             group = group
                 .add(hole(point, false))
                 .add(self.label(point, name, false));
         }
-        let name = self.at(9.0, 11.2);
+        let name = self.page_point(9.0, 11.2);
         group.add(text_start("Arduino UNO", name, 18.0))
     }
 
@@ -105,17 +105,21 @@ impl Uno {
     fn draw_sockets(&self, group: Group) -> Group {
         let block = |x: f64, top: f64, size: (f64, f64), fill| {
             edged(
-                rectangle(self.at(x, top), (size.0 * PITCH, size.1 * PITCH), fill),
+                rectangle(
+                    self.page_point(x, top),
+                    (size.0 * PITCH, size.1 * PITCH),
+                    fill,
+                ),
                 DARK,
                 1.2,
             )
         };
-        let led = self.at(9.4, 13.6);
+        let led = self.page_point(9.4, 13.6);
         group
             .add(block(-2.5, 17.5, (6.4, 4.7), "#c9c9c9"))
-            .add(text_middle("USB", self.at(0.7, 14.8), 14.0))
+            .add(text_middle("USB", self.page_point(0.7, 14.8), 14.0))
             .add(block(-0.8, 4.8, (5.4, 3.6), "#bdbdbd"))
-            .add(text_middle("7-12 V", self.at(1.9, 2.6), 13.0))
+            .add(text_middle("7-12 V", self.page_point(1.9, 2.6), 13.0))
             .add(block(11.5, 9.2, (13.0, 3.0), "#8f8f8f"))
             .add(circle(led, 4.5, "#f0e442").set("stroke", DARK))
             .add(text_start("LED", (led.0 + 9.0, led.1 + 5.0), 13.0))
@@ -143,7 +147,7 @@ impl Uno {
     }
 
     /// A point on the page, from its position in tenths of an inch right of and above the board's lower left corner.
-    fn at(&self, right: f64, up: f64) -> (f64, f64) {
+    fn page_point(&self, right: f64, up: f64) -> (f64, f64) {
         (
             self.corner.0 + right * PITCH,
             self.corner.1 + (BOARD.1 - up) * PITCH,

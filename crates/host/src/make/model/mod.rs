@@ -71,7 +71,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let neutral = robot.lizard().solve(&robot.neutral())?;
     let mut scene = Scene::of(&assembly);
     for (long, more) in scene
-        .long
+        .excess_lengths
         .iter_mut()
         .zip(long_foot::length_errors(&args.long_foot)?)
     {
@@ -92,9 +92,9 @@ pub fn run(args: Args) -> Result<(), Failure> {
     };
     // Checked before the meshes are written: otherwise a failure would leave them without a model.
     files::check_replaceable(&args.file)?;
-    let mut also = String::new();
+    let mut summary_suffix = String::new();
     if let Some(course) = &scene.course {
-        also = format!(", and {} frames of `{}`", course.frames.len(), course.gait);
+        summary_suffix = format!(", and {} frames of `{}`", course.frames.len(), course.gait);
     }
     if format != Format::Mjcf {
         let meshes = pieces.meshes(&scene);
@@ -102,7 +102,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         for mesh in &meshes {
             files::write(&folder.join(&mesh.path), &mesh.bytes)?;
         }
-        also = format!(", and {} meshes in {}", meshes.len(), folder.display());
+        summary_suffix = format!(", and {} meshes in {}", meshes.len(), folder.display());
     }
     files::write(&args.file, text.as_bytes())?;
     // A stream such as /dev/stdout gets only the model, without the message.
@@ -110,7 +110,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         return Ok(());
     }
     let mut out = io::stdout().lock();
-    writeln!(out, "{}: the robot{also}", args.file.display())?;
+    writeln!(out, "{}: the robot{summary_suffix}", args.file.display())?;
     Ok(out.flush()?)
 }
 

@@ -2,12 +2,12 @@
 
 use std::io::{self, Write};
 
-use lizard_parts::{Answer, Assembly, FAR_MM, NearestPair, Proof, Questions, Unfit};
+use lizard_parts::{Answer, Assembly, BuildProblem, FAR_MM, NearestPair, Proof, Questions};
 use lizard_robot::servo::NAMES;
 use serde::{Deserialize, Serialize};
 
 use crate::Failure;
-use crate::shared::progress::bar;
+use crate::shared::progress::progress_bar;
 use crate::shared::spread::{Spread, Spreads};
 
 /// Prove that no two parts meet at any pose that the guard accepts
@@ -95,7 +95,7 @@ pub(super) fn proof(assembly: &Assembly) -> Proof {
 
 /// Makes the proof from the given answers, and computes those that are missing.
 fn complete_proof(questions: &Questions, answers: Option<Vec<Answer>>) -> Proof {
-    let bar = bar(questions.count(), PAIRS);
+    let bar = progress_bar(questions.count(), PAIRS);
     let answers = |index: usize| answers.as_ref()?.get(index).cloned();
     let proof = questions.answer(answers, |done, _| bar.set_position(done as u64));
     bar.finish_and_clear();
@@ -113,10 +113,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let questions = Questions::new(&assembly, |_, _| true);
     let count = questions.count();
     if let Some(part) = args.spread.part() {
-        let bar = bar(part.count(count), PAIRS);
+        let bar = progress_bar(part.count(count), PAIRS);
         let answer_one = |index| {
             bar.inc(1);
-            questions.one(index)
+            questions.answer_one(index)
         };
         part.print(&args, &args.spread.robot, count, answer_one)?;
         bar.finish_and_clear();
@@ -129,8 +129,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
         let report = Report {
             fits: judged.is_ok(),
             reason: judged.as_ref().err().map(ToString::to_string),
-            apart: proof.apart.iter().map(Pair::from).collect(),
-            meeting: proof.meeting.iter().map(Pair::from).collect(),
+            apart: proof.separate_pairs.iter().map(Pair::from).collect(),
+            meeting: proof.touching_pairs.iter().map(Pair::from).collect(),
             ranges: proof.ranges,
             pairs: proof.pairs,
             regions: proof.regions,
@@ -141,7 +141,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         print(&proof, args.all, &mut out)?;
     }
     out.flush()?;
-    judged.map_err(|clash| Unfit::from(clash).into())
+    judged.map_err(|clash| BuildProblem::from(clash).into())
 }
 
 fn print(proof: &Proof, shows_all: bool, out: &mut impl Write) -> io::Result<()> {
@@ -163,16 +163,16 @@ fn print(proof: &Proof, shows_all: bool, out: &mut impl Write) -> io::Result<()>
             SHOWN_ROWS.min(near.len())
         };
         for near in &near[..pairs] {
-            row(near, out)?;
+            print_row(near, out)?;
         }
         match near.len() - pairs {
             0 => Ok(()),
             more => writeln!(out, "... and {more} more (--all)"),
         }
     };
-    list(&proof.apart, out)?;
+    list(&proof.separate_pairs, out)?;
     writeln!(out, "\nmade to meet: air between them")?;
-    list(&proof.meeting, out)?;
+    list(&proof.touching_pairs, out)?;
     writeln!(out, "\nthe guard lets the servos turn at most")?;
     for (name, [from, to]) in NAMES.iter().zip(proof.ranges) {
         writeln!(out, "  {name} {from:7.2} to {to:7.2} deg")?;
@@ -182,7 +182,7 @@ fn print(proof: &Proof, shows_all: bool, out: &mut impl Write) -> io::Result<()>
         "{} pairs of shapes, {} regions of poses",
         proof.pairs, proof.regions
     )?;
-    if let (Ok(()), Some(min)) = (proof.judge(), proof.least()) {
+    if let (Ok(()), Some(min)) = (proof.judge(), proof.nearest()) {
         writeln!(
             out,
             "no two parts come nearer than {:.2} mm at any pose that the guard accepts",
@@ -192,7 +192,7 @@ fn print(proof: &Proof, shows_all: bool, out: &mut impl Write) -> io::Result<()>
     Ok(())
 }
 
-fn row(near: &NearestPair, out: &mut dyn Write) -> io::Result<()> {
+fn print_row(near: &NearestPair, out: &mut dyn Write) -> io::Result<()> {
     let seen = near.seen.as_ref();
     let parts = format!("{}, {}", near.first, near.second);
     write!(

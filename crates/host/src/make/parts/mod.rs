@@ -5,12 +5,12 @@ pub mod fit;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use lizard_parts::{Assembly, Bill, File, Unfit, coupon, papers, part_files};
+use lizard_parts::{Assembly, Bill, BuildProblem, File, coupon, papers, part_files};
 use lizard_robot::{Body, Robot};
 use serde::Serialize;
 
 use crate::shared::files;
-use crate::shared::progress::bar;
+use crate::shared::progress::progress_bar;
 use crate::{Failure, RobotFile};
 
 /// Make the parts of the robot: files to print and to cut, what to buy, how to build it
@@ -61,8 +61,8 @@ struct PartEntry {
     files: Vec<String>,
 }
 
-impl From<Unfit> for Failure {
-    fn from(unfit: Unfit) -> Self {
+impl From<BuildProblem> for Failure {
+    fn from(unfit: BuildProblem) -> Self {
         Self::Impossible(unfit.to_string())
     }
 }
@@ -83,13 +83,13 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
     if !args.coupon {
         assembly.check_measures()?;
-        fit::proof(&assembly).judge().map_err(Unfit::from)?;
+        fit::proof(&assembly).judge().map_err(BuildProblem::from)?;
         parts.extend(match args.corner {
             true => assembly.corner(),
             false => assembly.parts(),
         });
     }
-    let bar = bar(parts.len(), "{wide_bar} {pos}/{len} {msg}");
+    let bar = progress_bar(parts.len(), "{wide_bar} {pos}/{len} {msg}");
     let mut files = Vec::new();
     let mut list = Vec::new();
     for part in &parts {

@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use crate::make::draw;
 use crate::paper::design;
-use crate::shared::progress::bar;
+use crate::shared::progress::progress_bar;
 use crate::shared::{files, json};
 use crate::{Failure, PoseArgs, RobotFile};
 
@@ -74,7 +74,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         })
         .collect::<Result<_, Failure>>()?;
     if args.json {
-        json::line(&mut io::stdout().lock(), &drawn)?;
+        json::write_line(&mut io::stdout().lock(), &drawn)?;
     } else {
         for file in drawn.iter().flat_map(|drawn| &drawn.files) {
             println!("{}", file.display());
@@ -85,7 +85,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
 
 /// Every chart that does not depend on a pose, with its name.
 pub fn charts(robot: &Robot) -> Vec<(&'static str, String)> {
-    let progress = bar(0, "performance charts {bar:40} {pos}/{len} {eta}");
+    let progress = progress_bar(0, "performance charts {bar:40} {pos}/{len} {eta}");
     let points = design::chart(STEP, RINGS, &progress);
     progress.finish_and_clear();
     vec![

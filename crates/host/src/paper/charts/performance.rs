@@ -57,7 +57,7 @@ pub fn performance(points: &[Point], step: f64) -> String {
         let count = (SUM / step).round() as usize;
         // Cells are centred on the grid points, so the map extends half a cell beyond the axes.
         let wide = Plot {
-            corner: plot.at(-step / 2.0, SUM + step / 2.0),
+            corner: plot.page_point(-step / 2.0, SUM + step / 2.0),
             size: (PANEL * (SUM + step) / SUM, PANEL * (SUM + step) / SUM),
             x: (-step / 2.0, SUM + step / 2.0),
             y: (-step / 2.0, SUM + step / 2.0),
@@ -73,10 +73,13 @@ pub fn performance(points: &[Point], step: f64) -> String {
                 .map(|value| scale.colour(value))
         });
         for r3 in [0.1, 0.2, 0.3, 0.4] {
-            let (from, to) = (plot.at(0.0, SUM - r3), plot.at(SUM - r3, 0.0));
+            let (from, to) = (
+                plot.page_point(0.0, SUM - r3),
+                plot.page_point(SUM - r3, 0.0),
+            );
             group = group.add(line(from, to, "white", 0.8).set("stroke-dasharray", "3 4"));
         }
-        let (x, y) = plot.at(Proportions::PAPER.r1, Proportions::PAPER.r2);
+        let (x, y) = plot.page_point(Proportions::PAPER.r1, Proportions::PAPER.r2);
         group = group
             .add(edged(circle((x, y), 7.0, "none"), "white", 5.0))
             .add(edged(circle((x, y), 7.0, "none"), "#d55e00", 2.5));

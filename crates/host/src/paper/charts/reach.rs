@@ -71,13 +71,13 @@ pub fn reach(robot: &Robot) -> String {
     });
     for servo in 0..4 {
         let full_circle = foot_places(robot, servo, (-180..=180).map(f64::from), false);
-        let is_guarded = foot_places(robot, servo, (-RANGE..=RANGE).map(f64::from), true);
+        let guarded_arc = foot_places(robot, servo, (-RANGE..=RANGE).map(f64::from), true);
         group = group
             .add(
                 plot.curve(&full_circle, GREY, 1.2)
                     .set("stroke-dasharray", "5 4"),
             )
-            .add(plot.curve(&is_guarded, LEGS, 4.0))
+            .add(plot.curve(&guarded_arc, LEGS, 4.0))
             .add(
                 plot.curve(&foot_path(robot, servo), DARK, 8.0)
                     .set("stroke-opacity", 0.55),
@@ -85,7 +85,7 @@ pub fn reach(robot: &Robot) -> String {
     }
     for shaft in robot.lizard().shafts() {
         group = group.add(edged(
-            circle(plot.at(shaft.x, shaft.y), 6.0, "white"),
+            circle(plot.page_point(shaft.x, shaft.y), 6.0, "white"),
             DARK,
             2.0,
         ));

@@ -64,8 +64,8 @@ pub fn singularity(robot: &Robot) -> String {
     }
     group = draw_curves(group, &left, robot);
     // The outline of the right panel in the left one.
-    let corner = left.at(near.x.0, near.y.1);
-    let end = left.at(near.x.1, near.y.0);
+    let corner = left.page_point(near.x.0, near.y.1);
+    let end = left.page_point(near.x.1, near.y.0);
     group = group.add(edged(
         rectangle(corner, (end.0 - corner.0, end.1 - corner.1), "none"),
         DARK,
@@ -83,7 +83,7 @@ pub fn singularity(robot: &Robot) -> String {
     }
     for (i, (_, path)) in paths.iter().enumerate() {
         if let [(x, y)] = path[..] {
-            let dot = circle(right.at(x, y), 6.0, STYLES[i % STYLES.len()].0);
+            let dot = circle(right.page_point(x, y), 6.0, STYLES[i % STYLES.len()].0);
             group = group.add(dot.set("stroke", "white").set("stroke-width", 1.5));
         }
     }
@@ -156,7 +156,7 @@ fn least(robot: &Robot, theta1: f64, theta4: f64) -> Option<f64> {
     let broken = robot
         .limits()
         .violations(&s)
-        .any(|v| !matches!(v.what, Check::StrokeLeft | Check::StrokeRight));
+        .any(|v| !matches!(v.check, Check::StrokeLeft | Check::StrokeRight));
     let m = &s.margins;
     let margins = [m.type2[0], m.type1[0], m.type1[1], m.leg[0], m.leg[1]];
     (!broken).then(|| margins.into_iter().fold(1.0, f64::min))
@@ -252,7 +252,7 @@ fn draw_curves(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
     });
     for pose in bars.coinciding_tips() {
         if pose.theta_left >= 0.0 && pose.theta_right >= 0.0 {
-            let position = plot.at(pose.theta_left, pose.theta_right);
+            let position = plot.page_point(pose.theta_left, pose.theta_right);
             group = group.add(cross(position, 7.0, DARK, 3.0));
         }
     }
@@ -286,8 +286,8 @@ fn draw_sweep(mut group: Group, plot: &Plot, poses_at: impl Fn(f64) -> Vec<Singu
                     Singularity::RightArm => A2,
                     Singularity::Couplers => DARK,
                 };
-                let start = plot.at(from.theta_left, from.theta_right);
-                let end = plot.at(pose.theta_left, pose.theta_right);
+                let start = plot.page_point(from.theta_left, from.theta_right);
+                let end = plot.page_point(pose.theta_left, pose.theta_right);
                 group = group.add(line(start, end, colour, 2.5));
             }
         }

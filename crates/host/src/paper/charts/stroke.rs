@@ -4,7 +4,7 @@ use lizard_robot::{CheckedGait, Robot};
 use svg::node::element::Group;
 
 use crate::shared::ink::{Anchor, GREY, page, rectangle, text, text_start, title};
-use crate::shared::number::tidy;
+use crate::shared::number::round_decimals;
 use crate::shared::plot::{Axis, IMPOSSIBLE, Plot, draw_entry};
 
 const COLUMNS: usize = 4;
@@ -67,7 +67,7 @@ fn draw_panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &CheckedGait) 
         (plot.y.0, robot.limits().stroke_min),
         (robot.limits().stroke_max, plot.y.1),
     ] {
-        let (top, bottom) = (plot.at(0.0, to), plot.at(0.0, from));
+        let (top, bottom) = (plot.page_point(0.0, to), plot.page_point(0.0, from));
         group = group.add(rectangle(top, (plot.size.0, bottom.1 - top.1), IMPOSSIBLE));
     }
     let travel: Vec<(f64, f64, f64)> = (0..=400)
@@ -94,7 +94,11 @@ fn draw_panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &CheckedGait) 
     let smallest = values().fold(f64::INFINITY, f64::min);
     let largest = values().fold(f64::NEG_INFINITY, f64::max);
     let head = (plot.corner.0, plot.corner.1 - 10.0);
-    let range = format!("{:+.1} to {:+.1} mm", tidy(smallest, 1), tidy(largest, 1));
+    let range = format!(
+        "{:+.1} to {:+.1} mm",
+        round_decimals(smallest, 1),
+        round_decimals(largest, 1)
+    );
     group
         .add(text_start(&gait.name().replace('-', " "), head, 17.0).set("font-weight", "bold"))
         .add(text(

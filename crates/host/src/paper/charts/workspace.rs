@@ -143,7 +143,11 @@ pub fn conditioning(robot: &Robot) -> String {
 /// A circle in the plot.
 fn ring(plot: &Plot, centre: Vector, radius: f64, colour: &str, width: f64) -> Ring {
     edged(
-        circle(plot.at(centre.x, centre.y), radius * plot.scale(), "none"),
+        circle(
+            plot.page_point(centre.x, centre.y),
+            radius * plot.scale(),
+            "none",
+        ),
         colour,
         width,
     )
@@ -177,7 +181,7 @@ fn draw_mechanism(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
         group = group.add(plot.curve(&points, DARK, 4.0));
         for (i, (x, y)) in points.into_iter().enumerate() {
             let fill = if i % 4 == 0 { BLUE } else { "white" };
-            group = group.add(edged(circle(plot.at(x, y), 6.0, fill), DARK, 2.0));
+            group = group.add(edged(circle(plot.page_point(x, y), 6.0, fill), DARK, 2.0));
         }
     }
     group

@@ -14,18 +14,18 @@ use serde::{Deserialize, Serialize};
 use crate::Failure;
 use crate::shared::json;
 use crate::shared::pose_args::Quantity;
-use crate::shared::progress::bar;
+use crate::shared::progress::progress_bar;
 use crate::shared::spread::{Spread, Spreads};
 
 pub use chart::{Point, chart};
 pub use performance::{CLAIM, Conditioning, Performance, lci};
 pub use proportions::{Proportions, SUM, triangle};
-pub use search::{Demands, Design, Search, design, ranked};
+pub use search::{Demands, Design, Search, design, merge_ranked};
 
 /// Number of rings at which the inscribed circle of a single design is sampled.
-const FINE: usize = 128;
+const FINE_RINGS: usize = 128;
 /// Number of rings at which the inscribed circles are sampled if there are many designs.
-pub const COARSE: usize = 32;
+pub const COARSE_RINGS: usize = 32;
 
 /// Dimensional synthesis of the head and tail five-bar.
 ///
@@ -130,7 +130,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     } else {
         let report = Report::new(proportions, l0);
         if args.json {
-            json::line(&mut out, &report)?;
+            json::write_line(&mut out, &report)?;
         } else {
             out.write_all(report.text(&robot).as_bytes())?;
         }
@@ -175,7 +175,7 @@ impl Report {
             l0: bars.base,
             l1: bars.crank_left,
             l2: bars.coupler_left,
-            performance: Performance::of(&bars, FINE),
+            performance: Performance::of(&bars, FINE_RINGS),
         }
     }
 
@@ -254,11 +254,11 @@ fn verdict(lci: &Conditioning, r_mic: f64) -> String {
 }
 
 fn print_charts(args: &Args, out: &mut impl Write) -> Result<(), Failure> {
-    let progress = bar(0, "performance charts {bar:40} {pos}/{len} {eta}");
-    let points = chart(args.step, COARSE, &progress);
+    let progress = progress_bar(0, "performance charts {bar:40} {pos}/{len} {eta}");
+    let points = chart(args.step, COARSE_RINGS, &progress);
     progress.finish_and_clear();
     if args.json {
-        return Ok(json::line(out, &points)?);
+        return Ok(json::write_line(out, &points)?);
     }
     writeln!(
         out,
@@ -306,21 +306,23 @@ fn print_ranking(
         shortest: args.shortest,
         sweep: args.sweep,
     };
-    let progress = bar(0, "designs {bar:40} {pos}/{len} {eta}");
+    let progress = progress_bar(0, "designs {bar:40} {pos}/{len} {eta}");
     let search = Search::new(args.step, demands, &progress, |count| {
         args.spread.own(count)
     });
-    let search_piece = |index| search.piece(index);
-    let pieces = args.spread.all(args, search.pieces(), search_piece)?;
+    let search_piece = |index| search.compute_piece(index);
+    let pieces = args
+        .spread
+        .all_pieces(args, search.piece_count(), search_piece)?;
     progress.finish_and_clear();
     let Some(pieces) = pieces else {
         return Ok(());
     };
-    let designs = ranked(pieces);
+    let designs = merge_ranked(pieces);
     let top_designs = &designs[..designs.len().min(args.top)];
     let reference = design(given, &demands);
     if args.json {
-        return Ok(json::line(out, &top_designs)?);
+        return Ok(json::write_line(out, &top_designs)?);
     }
     writeln!(
         out,

@@ -80,18 +80,18 @@ impl<'a> Search<'a> {
             demands,
             progress,
         };
-        let points = PIECE_SIZE * own(search.pieces());
+        let points = PIECE_SIZE * own(search.piece_count());
         progress.set_length(points.min(search.points.len()) as u64);
         search
     }
 
     /// The number of all pieces.
-    pub fn pieces(&self) -> usize {
+    pub fn piece_count(&self) -> usize {
         self.points.len().div_ceil(PIECE_SIZE)
     }
 
     /// The designs of one piece that meet the demands.
-    pub fn piece(&self, index: usize) -> Vec<Design> {
+    pub fn compute_piece(&self, index: usize) -> Vec<Design> {
         let points = self
             .points
             .chunks(PIECE_SIZE)
@@ -106,7 +106,7 @@ impl<'a> Search<'a> {
 }
 
 /// The designs of all pieces, best first.
-pub fn ranked(pieces: Vec<Vec<Design>>) -> Vec<Design> {
+pub fn merge_ranked(pieces: Vec<Vec<Design>>) -> Vec<Design> {
     let mut designs = pieces.concat();
     rank(&mut designs);
     designs
@@ -179,7 +179,7 @@ fn meets_demands(bars: &FiveBar, neutral: f64, sweep: f64, demands: &Demands) ->
         SWEEP_SAMPLES.iter().all(|&j| {
             let right = 180.0 - neutral + j * sweep;
             let travel = span(left, neutral + j * sweep) - nominal;
-            limits.broken(Check::StrokeLeft, travel).is_none()
+            limits.violation_of(Check::StrokeLeft, travel).is_none()
                 && bars
                     .forward(left, right)
                     .is_ok_and(|pose| limits.end_violations(End::Head, &pose).next().is_none())

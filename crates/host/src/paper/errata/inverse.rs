@@ -15,7 +15,7 @@ pub const EQUATIONS: &[Equation] = &[
         "mm in length",
         |s| {
             let l = &s.lizard.links;
-            arm(s.s.head.end_point, -l.l0 / 2.0, l.l1, s.angles().t[1], l.l2)
+            arm_error(s.s.head.end_point, -l.l0 / 2.0, l.l1, s.angles().t[1], l.l2)
         },
     ),
     Equation::new(
@@ -24,14 +24,14 @@ pub const EQUATIONS: &[Equation] = &[
         "mm in length",
         |s| {
             let l = &s.lizard.links;
-            arm(s.s.head.end_point, l.l0 / 2.0, l.l1, s.angles().t[2], l.l2)
+            arm_error(s.s.head.end_point, l.l0 / 2.0, l.l1, s.angles().t[2], l.l2)
         },
     )
     .corrected(
         "(x11 - l4 cos θ4 - l0/2)² + (y11 - l4 sin θ4)² = l3²",
         |s| {
             let l = &s.lizard.links;
-            arm(s.s.head.end_point, l.l0 / 2.0, l.l4, s.angles().t[4], l.l3)
+            arm_error(s.s.head.end_point, l.l0 / 2.0, l.l4, s.angles().t[4], l.l3)
         },
     ),
     Equation::new(
@@ -40,14 +40,14 @@ pub const EQUATIONS: &[Equation] = &[
         "mm in length",
         |s| {
             let l = &s.lizard.links;
-            arm(tail(s), -l.l5 / 2.0, l.l9, s.angles().t[8], l.l8)
+            arm_error(tail(s), -l.l5 / 2.0, l.l9, s.angles().t[8], l.l8)
         },
     )
     .corrected(
         "the same in a frame turned by 180°: x21, y21 negated, θ8 - 180°",
         |s| {
             let l = &s.lizard.links;
-            arm(-tail(s), -l.l5 / 2.0, l.l9, s.angles().t[8] - PI, l.l8)
+            arm_error(-tail(s), -l.l5 / 2.0, l.l9, s.angles().t[8] - PI, l.l8)
         },
     ),
     Equation::new(
@@ -56,14 +56,14 @@ pub const EQUATIONS: &[Equation] = &[
         "mm in length",
         |s| {
             let l = &s.lizard.links;
-            arm(tail(s), l.l5 / 2.0, l.l9, s.angles().t[7], l.l8)
+            arm_error(tail(s), l.l5 / 2.0, l.l9, s.angles().t[7], l.l8)
         },
     )
     .corrected(
         "in the turned frame (x21 - l6 cos θ5 - l5/2)² + (y21 - l6 sin θ5)² = l7²",
         |s| {
             let l = &s.lizard.links;
-            arm(-tail(s), l.l5 / 2.0, l.l6, s.angles().t[5] - PI, l.l7)
+            arm_error(-tail(s), l.l5 / 2.0, l.l6, s.angles().t[5] - PI, l.l7)
         },
     ),
     Equation::new(
@@ -101,7 +101,7 @@ pub const EQUATIONS: &[Equation] = &[
 ];
 
 /// The difference between a coupler's length and the distance from its crank's tip to a point.
-fn arm(point: Vector, shaft: f64, crank: f64, angle: f64, coupler: f64) -> Option<f64> {
+fn arm_error(point: Vector, shaft: f64, crank: f64, angle: f64, coupler: f64) -> Option<f64> {
     let tip = Vector::new(shaft, 0.0) + cis(crank, angle);
     Some(((point - tip).length() - coupler).abs())
 }

@@ -24,16 +24,16 @@ pub const EQUATIONS: &[Equation] = &[
         "4.2 θ_lg13, front legs",
         "θ_lg13 = 2 atan((-H + sqrt(H² - 4GI))/2G)",
         "deg",
-        |s| follower(s, FRONT, 1.0, None),
+        |s| follower_error(s, FRONT, 1.0, None),
     )
     .corrected("the root with - for 0 < θ_lg < 180°", |s| {
-        follower(s, FRONT, -1.0, None)
+        follower_error(s, FRONT, -1.0, None)
     }),
     Equation::new(
         "4.2 θ_lg13, back legs",
         "the same, with the + root",
         "deg",
-        |s| follower(s, BACK, 1.0, None),
+        |s| follower_error(s, BACK, 1.0, None),
     ),
     Equation::new(
         "4.2 H, legs 2 to 4",
@@ -41,29 +41,29 @@ pub const EQUATIONS: &[Equation] = &[
         "deg in θ_lg13, root already corrected",
         |s| {
             let h = Some(-2.0 * s.angles().t[1].sin());
-            let front = follower(s, &[4], -1.0, h);
-            let back = follower(s, BACK, 1.0, h);
+            let front = follower_error(s, &[4], -1.0, h);
+            let back = follower_error(s, BACK, 1.0, h);
             Some(front?.max(back?))
         },
     )
     .corrected("H = -2 sin θ_lgi", |s| {
-        Some(follower(s, &[4], -1.0, None)?.max(follower(s, BACK, 1.0, None)?))
+        Some(follower_error(s, &[4], -1.0, None)?.max(follower_error(s, BACK, 1.0, None)?))
     }),
     Equation::new(
         "4.2 θ_lg12, front legs",
         "θ_lg12 = 2 atan((-K - sqrt(K² - 4JL))/2J), J: -lg10 cos θ/lg12, L: -(lg10/lg12 + 1) cos θ",
         "deg",
-        |s| coupler(s, FRONT, -1.0, -1.0),
+        |s| coupler_error(s, FRONT, -1.0, -1.0),
     )
     .corrected("J: +lg10 cos θ/lg12, L: +(lg10/lg12 - 1) cos θ", |s| {
-        coupler(s, FRONT, 1.0, -1.0)
+        coupler_error(s, FRONT, 1.0, -1.0)
     }),
     Equation::new("4.2 θ_lg12, back legs", "the same", "deg", |s| {
-        coupler(s, BACK, -1.0, -1.0)
+        coupler_error(s, BACK, -1.0, -1.0)
     })
     .corrected(
         "J and L as above, and the + root for 180° < θ_lg < 360°",
-        |s| coupler(s, BACK, 1.0, 1.0),
+        |s| coupler_error(s, BACK, 1.0, 1.0),
     ),
 ];
 
@@ -83,7 +83,7 @@ fn worst_of(s: &Sample, legs: &[usize], miss: impl Fn(f64) -> Option<f64>) -> Op
 
 /// The error of the follower's angle by G, H, I as printed, or with another H; `sign` selects the root. In a
 /// parallelogram the follower has the angle of the crank.
-fn follower(s: &Sample, legs: &[usize], sign: f64, h: Option<f64>) -> Option<f64> {
+fn follower_error(s: &Sample, legs: &[usize], sign: f64, h: Option<f64>) -> Option<f64> {
     let Leg {
         ground,
         crank,
@@ -106,7 +106,7 @@ fn follower(s: &Sample, legs: &[usize], sign: f64, h: Option<f64>) -> Option<f64
 
 /// The error of the coupler's angle by J, K, L; in a parallelogram this angle is 0. `term_sign` is the sign of the
 /// terms in lg12, -1 as printed and +1 as corrected; `sign` selects the root.
-fn coupler(s: &Sample, legs: &[usize], term_sign: f64, sign: f64) -> Option<f64> {
+fn coupler_error(s: &Sample, legs: &[usize], term_sign: f64, sign: f64) -> Option<f64> {
     let Leg {
         ground,
         crank,

@@ -18,7 +18,7 @@ use serde::Serialize;
 
 use crate::Failure;
 use crate::shared::json;
-use crate::shared::progress::bar;
+use crate::shared::progress::progress_bar;
 use equation::{Equation, Misses};
 use sample::Sample;
 
@@ -76,7 +76,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let entries = measure(args.samples);
     let mut out = io::stdout().lock();
     if args.json {
-        json::line(&mut out, &entries)?;
+        json::write_line(&mut out, &entries)?;
     } else if args.markdown {
         out.write_all(markdown(&entries, args.samples).as_bytes())?;
     } else {
@@ -98,7 +98,7 @@ pub fn measure(samples: u32) -> Vec<Entry> {
     .into_iter()
     .flatten()
     .collect();
-    let progress = bar(all.len(), "equations {bar:40} {pos}/{len}");
+    let progress = progress_bar(all.len(), "equations {bar:40} {pos}/{len}");
     let entries = all
         .into_par_iter()
         .progress_with(progress.clone())
@@ -146,7 +146,7 @@ impl Entry {
         let mut words = self.plain_miss();
         if let Some((worst, place)) = self.aside {
             let unit = self.unit;
-            let _ = write!(words, "; {} {unit} at {place}", figures(worst));
+            let _ = write!(words, "; {} {unit} at {place}", format_three_digits(worst));
         }
         words
     }
@@ -156,7 +156,7 @@ impl Entry {
         if self.holds {
             return "rounding".to_string();
         }
-        let mut words = format!("{} {}", figures(self.worst), self.unit);
+        let mut words = format!("{} {}", format_three_digits(self.worst), self.unit);
         if self.unreal >= 0.999_95 {
             words = "no real value".to_string();
         } else if self.unreal > 0.0 {
@@ -176,7 +176,7 @@ impl Entry {
 }
 
 /// Formats a value with three significant digits, without an exponent.
-fn figures(value: f64) -> String {
+fn format_three_digits(value: f64) -> String {
     let digits = (2 - value.abs().max(1e-9).log10().floor() as i32).clamp(0, 9);
     format!("{value:.0$}", digits as usize)
 }

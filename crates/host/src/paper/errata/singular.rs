@@ -22,21 +22,21 @@ pub const EQUATIONS: &[Equation] = &[
         "5.1 K, head",
         "[-l1 sin θ1, -l4 sin θ4; l1 cos θ1, -l4 cos θ4]",
         "mm/rad",
-        |s| K_HEAD.printed(s),
+        |s| K_HEAD.printed_error(s),
     )
-    .clockwise(|s| K_HEAD.clockwise(s))
+    .clockwise(|s| K_HEAD.clockwise_error(s))
     .corrected("second column +l4 sin θ4, -l4 cos θ4", |s| {
-        K_HEAD.corrected(s)
+        K_HEAD.corrected_error(s)
     }),
     Equation::new(
         "5.1 K, tail",
         "[-l6 sin θ5, -l9 sin θ8; l6 cos θ5, -l9 cos θ8]",
         "mm/rad",
-        |s| K_TAIL.printed(s),
+        |s| K_TAIL.printed_error(s),
     )
-    .clockwise(|s| K_TAIL.clockwise(s))
+    .clockwise(|s| K_TAIL.clockwise_error(s))
     .corrected("second column +l9 sin θ8, -l9 cos θ8", |s| {
-        K_TAIL.corrected(s)
+        K_TAIL.corrected_error(s)
     }),
     Equation::new(
         "5.1 K, left",
@@ -84,21 +84,21 @@ pub const EQUATIONS: &[Equation] = &[
         "5.1 K*, head",
         "[-l2 sin θ2, -l3 sin θ3; l2 cos θ2, -l3 cos θ3]",
         "mm/rad",
-        |s| PASSIVE_HEAD.printed(s),
+        |s| PASSIVE_HEAD.printed_error(s),
     )
-    .clockwise(|s| PASSIVE_HEAD.clockwise(s))
+    .clockwise(|s| PASSIVE_HEAD.clockwise_error(s))
     .corrected("second column +l3 sin θ3, -l3 cos θ3", |s| {
-        PASSIVE_HEAD.corrected(s)
+        PASSIVE_HEAD.corrected_error(s)
     }),
     Equation::new(
         "5.1 K*, tail",
         "[-l7 sin θ6, -l8 sin θ7; l7 cos θ6, -l8 cos θ7]",
         "mm/rad",
-        |s| PASSIVE_TAIL.printed(s),
+        |s| PASSIVE_TAIL.printed_error(s),
     )
-    .clockwise(|s| PASSIVE_TAIL.clockwise(s))
+    .clockwise(|s| PASSIVE_TAIL.clockwise_error(s))
     .corrected("second column +l8 sin θ7, -l8 cos θ7", |s| {
-        PASSIVE_TAIL.corrected(s)
+        PASSIVE_TAIL.corrected_error(s)
     }),
     Equation::new(
         "5.1 determinant of the printed K*",
@@ -260,7 +260,7 @@ const PASSIVE_TAIL: Block = Block {
 
 impl Block {
     /// The largest error of the printed block.
-    fn printed(&self, s: &Sample) -> Option<f64> {
+    fn printed_error(&self, s: &Sample) -> Option<f64> {
         let right = s.angles().t[self.angles[1]];
         Some(largest_difference(
             &(self.truth)(s),
@@ -270,7 +270,7 @@ impl Block {
 
     /// The largest error of the printed block if the right bar's angle is measured clockwise from
     /// -x. That reverses the sign of the derivative by this angle.
-    fn clockwise(&self, s: &Sample) -> Option<f64> {
+    fn clockwise_error(&self, s: &Sample) -> Option<f64> {
         let [a, b, c, d] = (self.truth)(s);
         let right = PI - s.angles().t[self.angles[1]];
         Some(largest_difference(
@@ -280,7 +280,7 @@ impl Block {
     }
 
     /// The largest error of the corrected block.
-    fn corrected(&self, s: &Sample) -> Option<f64> {
+    fn corrected_error(&self, s: &Sample) -> Option<f64> {
         let right = s.angles().t[self.angles[1]];
         Some(largest_difference(
             &(self.truth)(s),

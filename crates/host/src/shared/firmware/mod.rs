@@ -16,7 +16,7 @@ use lizard_core::numbers::section::{Region, START};
 pub use simulated::{Firmware, Unreadable, image_with, read, with_robot};
 
 #[cfg(feature = "simulator")]
-pub(crate) use simulated::{code_bytes, of_robot, without_contacts};
+pub(crate) use simulated::{code_bytes, select_firmware, without_contacts};
 
 #[cfg(feature = "simulator")]
 mod simulated;

@@ -75,7 +75,7 @@ impl From<FirmwareError> for Failure {
 ///
 /// # Errors
 /// Fails if the file is missing, is not a program of an AVR, or has another robot in it.
-pub(crate) fn of_robot(
+pub(crate) fn select_firmware(
     elf: Option<&Path>,
     file: &RobotFile,
     robot: &Robot,
@@ -89,12 +89,12 @@ pub(crate) fn of_robot(
         return Err(FirmwareError::Missing(elf.display().to_string()).into());
     }
     let image = read(elf)?;
-    if let Some(label_in_image) = robot_in(&image.flash())
-        && label_in_image.hash() != robot.firmware().hash()
+    if let Some(robot_in_image) = robot_in(&image.flash())
+        && robot_in_image.hash() != robot.firmware().hash()
     {
         return Err(FirmwareError::OtherRobot {
             robot: file.name()?,
-            its: label(&label_in_image),
+            its: label(&robot_in_image),
             wanted: label(robot.firmware()),
             elf: elf.to_owned(),
         }

@@ -6,7 +6,7 @@ use lizard_robot::CoreRobot;
 
 use crate::simulate::board::{BoardError, SimulatedBoard};
 use crate::simulate::sim::core_run;
-use crate::simulate::sim::frame::{FRAME, first_cycle, frames};
+use crate::simulate::sim::frame::{FRAME, first_cycle, group_frames};
 
 /// The errors of the pulses' widths and periods.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,7 +15,7 @@ pub struct Exactness {
     /// known, because the firmware was built from another source.
     pub error: Option<[i64; 2]>,
     /// Largest deviation of the distance between two frames from 20 ms, cycles.
-    pub period: u64,
+    pub period_error: u64,
     /// Largest number of servo pins that are high at the same time.
     pub pins_high: u32,
     /// The step in which widths vary, cycles; `None` if they do not vary.
@@ -28,7 +28,7 @@ impl Exactness {
     ///
     /// # Errors
     /// Fails if the board has sent no pulse.
-    pub fn of(
+    pub fn measure(
         board: &mut SimulatedBoard,
         robot: &CoreRobot,
         commands: usize,
@@ -38,7 +38,7 @@ impl Exactness {
         let pins = board.pins();
         let mut edges = board.uno.edges();
         let count = (board.uno.cycle() - first_cycle(first)) / FRAME;
-        let frames_sent = frames(&edges, pins, first, count);
+        let frames_sent = group_frames(&edges, pins, first, count);
         let received = &board.uno.received_by_uno()[..commands];
         let commanded = core_run::play(*robot, received, first, frames_sent.len());
         let is_known = banner.as_deref() == commanded.written.lines().next();
@@ -66,7 +66,7 @@ impl Exactness {
         edges.retain(|edge| pins.contains(&edge.pin));
         Ok(Self {
             error: is_known.then_some(error),
-            period,
+            period_error: period,
             pins_high: most_pins_high(&edges),
             step: (step > 0).then_some(step),
         })
@@ -79,7 +79,7 @@ impl Exactness {
     }
 
     /// Worst deviation of a width from its command, cycles.
-    pub fn worst(&self) -> Option<u64> {
+    pub fn max_width_error(&self) -> Option<u64> {
         self.error
             .map(|[smallest, largest]| smallest.unsigned_abs().max(largest.unsigned_abs()))
     }

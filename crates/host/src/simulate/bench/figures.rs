@@ -155,10 +155,10 @@ impl Figures {
         progress("pulses on an idle line");
         let mut idle = GaitRun::of(boot_board()?, gait, 20_000)?;
         let bytes_sent = idle.board.uno.received_by_uno().len();
-        let idle_exact = Exactness::of(&mut idle.board, robot.firmware(), bytes_sent)?;
+        let idle_exact = Exactness::measure(&mut idle.board, robot.firmware(), bytes_sent)?;
         progress("pulses on a saturated line");
         let (mut flooded, bytes_sent) = flood(boot_board()?, turn)?;
-        let flooded_exact = Exactness::of(&mut flooded, robot.firmware(), bytes_sent)?;
+        let flooded_exact = Exactness::measure(&mut flooded, robot.firmware(), bytes_sent)?;
         progress("every command");
         let mut session = run_all_commands(boot_board()?, robot)?;
         progress("the control tick in every motion");
@@ -182,7 +182,9 @@ impl Figures {
         let frames = idle.cycles as f64 / FRAME as f64;
         let of_gait = |figure: f64| moves.then_some(figure);
         let section = robot.section().len() as u32;
-        let width_error = idle_exact.worst().zip(flooded_exact.worst());
+        let width_error = idle_exact
+            .max_width_error()
+            .zip(flooded_exact.max_width_error());
         Ok(Self {
             code: firmware::code_bytes(long.board.uno.image(), robot),
             section,
@@ -204,11 +206,11 @@ impl Figures {
             jitter_idle: idle_exact.jitter(),
             jitter_flooded: flooded_exact.jitter(),
             width_error: width_error.map(|(idle, flooded)| idle.max(flooded)),
-            period_error: idle_exact.period.max(flooded_exact.period),
+            period_error: idle_exact.period_error.max(flooded_exact.period_error),
             pins_high: idle_exact.pins_high.max(flooded_exact.pins_high),
             resolution: idle_exact.step,
-            late: session.count("late")? + flooded.count("late")?,
-            lost: session.count("rx_lost")?,
+            late: session.read_counter("late")? + flooded.read_counter("late")?,
+            lost: session.read_counter("rx_lost")?,
             wall,
             gait: gaits.first().cloned(),
         })

@@ -11,7 +11,7 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 
 use crate::shared::firmware;
-use crate::shared::progress::bar;
+use crate::shared::progress::progress_bar;
 use crate::simulate::patrol::with_patrol;
 use crate::{Failure, RobotFile};
 
@@ -68,9 +68,9 @@ pub fn run(args: Args) -> Result<(), Failure> {
         ));
     };
     let robot = args.robot.load()?;
-    firmware::of_robot(Some(&elf), &args.robot, &robot)?;
+    firmware::select_firmware(Some(&elf), &args.robot, &robot)?;
     let patrolling = with_patrol(&args.robot.text()?, &[]).ok();
-    let progress = bar(0, "{spinner} {msg}, {elapsed}");
+    let progress = progress_bar(0, "{spinner} {msg}, {elapsed}");
     progress.enable_steady_tick(std::time::Duration::from_millis(100));
     let figures = Figures::measure(&elf, &robot, patrolling.as_ref(), |step| {
         progress.set_message(step);

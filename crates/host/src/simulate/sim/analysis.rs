@@ -106,11 +106,11 @@ impl ServoFrame {
 }
 
 /// The servo angles of frames, from the widths of their pulses.
-pub fn instants(robot: &Robot, frames: &[Frame]) -> Vec<ServoFrame> {
+pub fn servo_frames_of(robot: &Robot, frames: &[Frame]) -> Vec<ServoFrame> {
     let seconds = |frame: &Frame| frame.start as f64 / FREQUENCY as f64;
     frames
         .iter()
-        .map(|frame| ServoFrame::of(robot, seconds(frame), frame.all()))
+        .map(|frame| ServoFrame::of(robot, seconds(frame), frame.all_widths()))
         .collect()
 }
 
@@ -125,7 +125,7 @@ pub struct Run<'a> {
 
 impl<'a> Run<'a> {
     /// The servo angles of the frames whose numbers are in `range`, in order.
-    pub fn within(
+    pub fn servo_frames_in(
         self,
         range: std::ops::Range<usize>,
     ) -> impl Iterator<Item = ServoFrame> + Clone + 'a {
@@ -138,24 +138,24 @@ impl<'a> Run<'a> {
     }
 
     /// The servo angles of all frames, in order.
-    pub fn instants(self) -> impl Iterator<Item = ServoFrame> + Clone + 'a {
-        self.within(0..self.log.widths.len())
+    pub fn servo_frames(self) -> impl Iterator<Item = ServoFrame> + Clone + 'a {
+        self.servo_frames_in(0..self.log.widths.len())
     }
 }
 
 impl Serialize for Run<'_> {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq(self.instants())
+        serializer.collect_seq(self.servo_frames())
     }
 }
 
 /// Makes each servo's row of the table. `commands` are the widths in cycles that the
 /// firmware's core requested in each frame, 0 for no pulse.
-pub fn servos(run: Run<'_>, commands: Option<&[[u16; 4]]>) -> Vec<ServoReport> {
+pub fn servo_reports(run: Run<'_>, commands: Option<&[[u16; 4]]>) -> Vec<ServoReport> {
     let frames = &run.log.widths;
     let mut slew = [0.0f64; 4];
     let mut angles_before = None;
-    for angles in run.instants().map(|instant| instant.angles) {
+    for angles in run.servo_frames().map(|instant| instant.angles) {
         if let (Some(angles_before), Some(angles)) = (angles_before, angles) {
             let angles_before: [f64; 4] = angles_before;
             slew = std::array::from_fn(|i| slew[i].max((angles[i] - angles_before[i]).abs()));
@@ -186,7 +186,7 @@ pub fn servos(run: Run<'_>, commands: Option<&[[u16; 4]]>) -> Vec<ServoReport> {
 }
 
 /// Solves every pose of the run, and collects margins, strokes and violations.
-pub fn safety(run: Run<'_>) -> Safety {
+pub fn check_safety(run: Run<'_>) -> Safety {
     let mut safety = Safety {
         least: None,
         stroke: [f64::INFINITY, f64::NEG_INFINITY],
@@ -195,7 +195,7 @@ pub fn safety(run: Run<'_>) -> Safety {
     };
     // A standing robot repeats its pose, which is solved only once.
     let mut latest: Option<([f64; 4], Option<String>)> = None;
-    for instant in run.instants() {
+    for instant in run.servo_frames() {
         let Some(angles) = instant.angles else {
             continue;
         };
@@ -239,20 +239,20 @@ impl Safety {
 /// last one. Legs count as rigid, so that equal pairs of frames are computed once; `lizard twin`
 /// lets legs lag. Feet are never lifted: see [`lizard_robot::Ground`].
 pub fn command_paths(run: Run<'_>, spans: &[Span]) -> Vec<CommandPath> {
-    let mut steps = Steps {
+    let mut steps = TravelCache {
         run,
-        known: HashMap::new(),
+        travels: HashMap::new(),
     };
-    let mut sum = NOWHERE;
+    let mut sum = NO_TRAVEL;
     let mut all_known = [true; 3];
     let mut predictions = HashMap::new();
     let mut paths = Vec::with_capacity(spans.len() + 1);
     for span in spans {
-        let mut travel = NOWHERE;
+        let mut travel = NO_TRAVEL;
         for n in run.log.index(span.from)..run.log.index(span.to) {
-            let step = steps.from(n);
-            travel = followed_by(travel, step);
-            sum = followed_by(sum, step);
+            let step = steps.travel_from(n);
+            travel = compose_travel(travel, step);
+            sum = compose_travel(sum, step);
         }
         let predicted = *predictions
             .entry(span.command.as_str())
@@ -294,7 +294,7 @@ impl CommandPath {
 }
 
 /// The travel of a standing robot.
-const NOWHERE: Travel = Travel {
+const NO_TRAVEL: Travel = Travel {
     forward: 0.0,
     left: 0.0,
     turn: 0.0,
@@ -305,38 +305,38 @@ type Pair = [[u16; 4]; 2];
 
 /// Computes the movement from one frame to the next. A gait repeats its frames, so the results
 /// are kept.
-struct Steps<'a> {
+struct TravelCache<'a> {
     run: Run<'a>,
-    known: HashMap<Pair, Travel>,
+    travels: HashMap<Pair, Travel>,
 }
 
-impl Steps<'_> {
+impl TravelCache<'_> {
     /// The movement from frame number `n` to the next; zero while the robot rests, and for the last frame.
-    fn from(&mut self, n: usize) -> Travel {
+    fn travel_from(&mut self, n: usize) -> Travel {
         /// Largest number of pairs that are kept: a few megabytes.
-        const KEPT: usize = 100_000;
+        const MAX_CACHED_PAIRS: usize = 100_000;
         let frames = &self.run.log.widths;
         let Some(next) = frames.get(n + 1) else {
-            return NOWHERE;
+            return NO_TRAVEL;
         };
         let pair = [frames[n], *next];
-        if let Some(travel) = self.known.get(&pair) {
+        if let Some(travel) = self.travels.get(&pair) {
             return *travel;
         }
         let sweeps = self
             .run
-            .within(n..n + 2)
+            .servo_frames_in(n..n + 2)
             .filter_map(|instant| instant.sweeps);
         let travel = self.run.robot.ground().rigid().travel(sweeps);
-        if self.known.len() < KEPT {
-            self.known.insert(pair, travel);
+        if self.travels.len() < MAX_CACHED_PAIRS {
+            self.travels.insert(pair, travel);
         }
         travel
     }
 }
 
 /// Joins two movements; the second one is relative to the end of the first.
-fn followed_by(first: Travel, second: Travel) -> Travel {
+fn compose_travel(first: Travel, second: Travel) -> Travel {
     let (sin, cos) = first.turn.to_radians().sin_cos();
     Travel {
         forward: first.forward + cos * second.forward - sin * second.left,

@@ -12,22 +12,22 @@
 
 use lizard_core::console::LONGEST_LINE;
 use lizard_core::numbers::robot::Robot;
-use lizard_core::virtual_board::{Converter, Running, Transmitter, VirtualBoard};
+use lizard_core::virtual_board::{Converter, RunningRobot, Transmitter, VirtualBoard};
 use simulated_uno::{CYCLES_PER_MS, SerialByte};
 
 use super::frame::{FRAME, SLOT};
-use super::press::Change;
+use super::press::ContactChange;
 use super::supplies;
 
 /// Cycles that the UNO takes to send a byte: 10 bits, 17 * 8 cycles each.
-const BYTE: u64 = 1360;
+const BYTE_CYCLES: u64 = 1360;
 /// Bytes that the serial line takes before its writer has to wait: a ring of 255,
 /// and two in the transmitter.
 const CAPACITY: u64 = 255 + 2;
 /// Largest number of queued bytes that leaves room for the longest answer.
 const MAX_QUEUED: u64 = CAPACITY - LONGEST_LINE as u64;
 /// Cycles that the AVR takes to compute a frame, approximately.
-const FRAME_CYCLES: u64 = 8_000;
+const COMPUTE_CYCLES: u64 = 8_000;
 /// Cycles that the AVR takes to read the end of a line and to act on it, at most.
 const MAX_READING_CYCLES: u64 = 3_000;
 /// Largest number of frames from power-on until the robot wakes.
@@ -35,18 +35,18 @@ const MAX_FRAMES_TO_WAKE: usize = 500;
 
 /// The firmware's main loop on a virtual board.
 struct CoreRun {
-    running: Running,
+    running: RunningRobot,
 }
 
 impl CoreRun {
     fn new(robot: Robot<'static>) -> Self {
         let supplies = robot.supplies();
         let mut board = VirtualBoard::default();
-        board.transmitter = Transmitter::new(BYTE, CAPACITY);
+        board.transmitter = Transmitter::new(BYTE_CYCLES, CAPACITY);
         board.converter =
             Converter::new(supplies::reading(&supplies), supplies.rail_reference != 0);
         Self {
-            running: Running::with_flash(robot.section(), board),
+            running: RunningRobot::with_flash(robot.section(), board),
         }
     }
 
@@ -63,15 +63,20 @@ impl CoreRun {
         _ = self.running.main.step(&mut self.running.board);
         let widths = self.running.board.submitted().0.map(|width| width.0);
         // The output of a frame is written right after it.
-        self.wake(cycle + FRAME_CYCLES);
+        self.wake(cycle + COMPUTE_CYCLES);
         widths
     }
 
     /// The cycle at which waiting lines are written and waiting bytes are read; `None` if nothing waits.
     fn next_wake(&self) -> Option<u64> {
         let board = &self.running.board;
-        let waits = board.unread() > 0 || self.running.has_output();
-        waits.then(|| board.transmitter.free().saturating_sub(MAX_QUEUED * BYTE))
+        let is_waiting = board.unread() > 0 || self.running.has_output();
+        is_waiting.then(|| {
+            board
+                .transmitter
+                .free()
+                .saturating_sub(MAX_QUEUED * BYTE_CYCLES)
+        })
     }
 }
 
@@ -95,7 +100,7 @@ pub fn play(robot: Robot<'static>, received: &[SerialByte], first: u64, count: u
 pub fn play_with_contacts(
     robot: Robot<'static>,
     received: &[SerialByte],
-    contacts: &[Change],
+    contacts: &[ContactChange],
     first: u64,
     count: usize,
 ) -> Commands {
@@ -143,7 +148,7 @@ pub fn play_with_contacts(
 }
 
 /// Indices of the lines that end so shortly before a tick that a few cycles decide if main has read them in time.
-pub fn undecided(received: &[SerialByte], first: u64) -> impl Iterator<Item = usize> {
+pub fn undecided_lines(received: &[SerialByte], first: u64) -> impl Iterator<Item = usize> {
     let tick = first.saturating_sub(SLOT) % FRAME;
     let ends = received.iter().filter(|byte| byte.byte == b'\n');
     let left = ends.map(move |end| (tick + FRAME - end.cycle % FRAME) % FRAME);

@@ -3,10 +3,10 @@
 use std::io::{self, Write};
 
 use super::session::{DialogueLine, Sender};
-use crate::shared::plain::plain;
+use crate::shared::plain::escape_controls;
 
 /// Number of lines of a run of `# t=` lines that are printed; the others are only counted.
-const SHOWN: usize = 3;
+const MAX_SHOWN_LINES: usize = 3;
 
 /// Prints the lines of a dialogue. Of a run of `# t=` lines, which `watch` causes, it prints only the first three and
 /// the number of the others, unless it is to print all.
@@ -28,10 +28,10 @@ impl Printer {
     /// # Errors
     /// Fails if writing fails.
     pub fn print(&mut self, line: &DialogueLine, out: &mut impl Write) -> io::Result<()> {
-        let watch = line.from == Sender::Robot && line.text.starts_with("# t=");
-        if watch && !self.shows_all {
+        let is_watch_line = line.from == Sender::Robot && line.text.starts_with("# t=");
+        if is_watch_line && !self.shows_all {
             self.run += 1;
-            if self.run > SHOWN {
+            if self.run > MAX_SHOWN_LINES {
                 return Ok(());
             }
         } else {
@@ -45,7 +45,7 @@ impl Printer {
             out,
             "{:>9.3} s  {mark} {}",
             line.ms / 1000.0,
-            plain(&line.text)
+            escape_controls(&line.text)
         )?;
         out.flush()
     }
@@ -55,7 +55,7 @@ impl Printer {
     /// # Errors
     /// Fails if writing fails.
     pub fn finish(&mut self, out: &mut impl Write) -> io::Result<()> {
-        let left_out = std::mem::take(&mut self.run).saturating_sub(SHOWN);
+        let left_out = std::mem::take(&mut self.run).saturating_sub(MAX_SHOWN_LINES);
         if left_out > 0 {
             writeln!(
                 out,

@@ -84,7 +84,7 @@ mod tests {
     }
 
     /// The movement of a servo's foot at a time of [`instants`]; `None` while the robot rests.
-    fn at(gait: &str, servo: usize, seconds: f64) -> Option<Phase> {
+    fn phase_at(gait: &str, servo: usize, seconds: f64) -> Option<Phase> {
         let spans = foot_spans(instants(gait).into_iter(), servo);
         let here = spans
             .iter()
@@ -119,14 +119,14 @@ mod tests {
     #[test]
     fn turning_left_pushes_forward_on_the_left_and_back_on_the_right() {
         // In the first fifth of `left` all legs make their common stroke.
-        let phases = [0, 1, 2, 3].map(|servo| at("left", servo, 1.1));
+        let phases = [0, 1, 2, 3].map(|servo| phase_at("left", servo, 1.1));
         let [left, right] = [Some(Phase::Swing), Some(Phase::Stance)];
         assert_eq!(phases, [left, right, right, left]);
     }
 
     #[test]
     fn a_foot_that_holds_stands_still_and_one_that_rests_does_nothing() {
-        assert_eq!(at("stand", 0, 2.0), Some(Phase::Still));
-        assert_eq!(at("walk", 0, 5.5), None);
+        assert_eq!(phase_at("stand", 0, 2.0), Some(Phase::Still));
+        assert_eq!(phase_at("walk", 0, 5.5), None);
     }
 }

@@ -23,7 +23,7 @@ pub struct Frame {
 
 impl Frame {
     /// The four widths; `None` unless all four servos have a pulse.
-    pub fn all(&self) -> Option<[u64; 4]> {
+    pub fn all_widths(&self) -> Option<[u64; 4]> {
         let [a1, a2, a3, a4] = self.widths;
         Some([a1?, a2?, a3?, a4?])
     }
@@ -33,7 +33,7 @@ impl Frame {
     /// # Panics
     /// Panics if a servo has no pulse in this frame.
     pub fn widths(&self) -> [u64; 4] {
-        self.all()
+        self.all_widths()
             .unwrap_or_else(|| panic!("a servo has no pulse: {self:?}"))
     }
 
@@ -70,7 +70,7 @@ pub fn latest_start(edges: &[Edge], pins: [Pin; 4]) -> Option<u64> {
 }
 
 /// Groups the pulses of these edges into the `count` frames from cycle `start` on.
-pub fn frames(edges: &[Edge], pins: [Pin; 4], start: u64, count: u64) -> Vec<Frame> {
+pub fn group_frames(edges: &[Edge], pins: [Pin; 4], start: u64, count: u64) -> Vec<Frame> {
     let empty = |n| Frame {
         start: start + n * FRAME,
         starts: [None; 4],
@@ -120,7 +120,7 @@ mod tests {
         edges.extend(pulse(start, 24_000, PINS[0]));
         edges.extend(pulse(start + 3 * SLOT, 25_000, PINS[3]));
         edges.extend(pulse(start + FRAME - 1, 26_000, PINS[0]));
-        let frames = frames(&edges, PINS, start, 3);
+        let frames = group_frames(&edges, PINS, start, 3);
         assert_eq!(frames[0].widths, [Some(24_000), None, None, Some(25_000)]);
         assert_eq!(frames[1].widths, [Some(26_000), None, None, None]);
         assert_eq!(frames[1].starts[0], Some(start + FRAME - 1));

@@ -105,12 +105,12 @@ impl FrameReader {
 
     /// Finishes the log with the complete frames up to a cycle.
     pub fn finish(mut self, cycle: u64) -> FrameLog {
-        let whole = if self.has_started {
+        let frame_count = if self.has_started {
             (cycle - first_cycle(self.log.first)) / FRAME
         } else {
             0
         };
-        self.log.widths.resize(whole as usize, [0; 4]);
+        self.log.widths.resize(frame_count as usize, [0; 4]);
         self.log
     }
 }

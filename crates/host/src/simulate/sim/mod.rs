@@ -29,13 +29,13 @@ use simulated_uno::{Air, Radio};
 use simulated_uno::{FREQUENCY, Fidelity, State, Uno};
 
 use crate::shared::firmware::{self, Firmware};
-use crate::shared::progress::{Spinner, bar};
+use crate::shared::progress::{Spinner, progress_bar};
 use crate::shared::suggestion::did_you_mean;
 use crate::shared::{files, json};
 use crate::{Failure, RobotFile};
 use analysis::Run;
 use dialogue::Printer;
-use press::{Change, Press};
+use press::{ContactChange, Press};
 use report::{Ram, Report};
 use script::Script;
 use session::{DialogueLine, Event, Recording};
@@ -133,13 +133,14 @@ pub fn run(args: Args) -> Result<(), Failure> {
         FidelityArg::Stock => Fidelity::Stock,
     };
     let robot = args.robot.load()?;
-    let contacts = press::changes(&args.press, &robot)?;
+    let contacts = press::contact_changes(&args.press, &robot)?;
     #[cfg(target_os = "linux")]
     if let Some(link) = &args.pty {
         let mut uno = match &args.boot_loader {
             Some(loader) => served::new_board(loader, fidelity)?,
             None => {
-                let image = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?.image;
+                let image =
+                    firmware::select_firmware(args.elf.as_deref(), &args.robot, &robot)?.image;
                 Uno::with_image(image, fidelity)
             }
         };
@@ -151,21 +152,22 @@ pub fn run(args: Args) -> Result<(), Failure> {
                 ..Air::default()
             })
         });
-        return served::until_interrupted(uno, link.as_deref(), radio, &contacts);
+        return served::serve_until_interrupted(uno, link.as_deref(), radio, &contacts);
     }
     let script = Script {
         contacts,
-        ..script(&args, &robot)?
+        ..choose_script(&args, &robot)?
     };
-    let Firmware { name, image } = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?;
+    let Firmware { name, image } =
+        firmware::select_firmware(args.elf.as_deref(), &args.robot, &robot)?;
     let mut uno = Uno::with_image(image, fidelity);
     supplies::connect(&mut uno, &robot);
     let mut printed = Vec::new();
     let recording = record(&mut uno, &robot, &script, &args, &mut printed)?;
 
     let spinner = Spinner::new("looking at every frame");
-    let spans = spans::spans(&script, &recording.answers);
-    let commands = commands(&robot, &recording, &script.contacts);
+    let spans = spans::command_spans(&script, &recording.answers);
+    let commands = core_widths(&robot, &recording, &script.contacts);
     let (robot, log) = (&robot, &recording.frames);
     let frames = Run { robot, log };
     let picture = timeline::draw(frames, &spans, &timeline::SIMULATED);
@@ -177,16 +179,16 @@ pub fn run(args: Args) -> Result<(), Failure> {
             Fidelity::Stock => "stock",
         },
         seconds: recording.cycles as f64 / FREQUENCY as f64,
-        wall_seconds: recording.wall.as_secs_f64(),
-        servos: analysis::servos(frames, commands.as_deref()),
-        safety: analysis::safety(frames),
+        wall_seconds: recording.wall_time.as_secs_f64(),
+        servos: analysis::servo_reports(frames, commands.as_deref()),
+        safety: analysis::check_safety(frames),
         way: analysis::command_paths(frames, &spans),
         most_pins_high: log.most_pins_high,
         asleep_percent: 100.0 * uno.asleep_cycles() as f64 / uno.cycle().max(1) as f64,
         flash: firmware::code_bytes(uno.image(), robot) + robot.section().len() as u32,
         ram: Ram::of(&uno),
         overruns: uno.overruns(),
-        resets: uno.resets(),
+        resets: uno.watchdog_resets(),
         ended: end_message(&recording.state),
         svg: Some(args.svg.display().to_string()),
         dialogue: printed,
@@ -195,7 +197,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     drop(spinner);
     let mut out = io::stdout().lock();
     if args.json {
-        json::line(&mut out, &report)?;
+        json::write_line(&mut out, &report)?;
     } else {
         report.print(&mut out)?;
     }
@@ -213,7 +215,7 @@ fn record(
     args: &Args,
     printed: &mut Vec<DialogueLine>,
 ) -> io::Result<Recording> {
-    let bar = simulated_time(script.end_ms);
+    let bar = time_progress_bar(script.end_ms);
     let mut printer = Printer::new(args.all);
     let mut out = io::stdout();
     let pins = frame::servo_pins(robot);
@@ -235,7 +237,11 @@ fn record(
 
 /// The widths that the firmware's core asks for; `None` if the firmware's banner does not
 /// say that it was built from the same core and tables as this program.
-fn commands(robot: &Robot, recording: &Recording, contacts: &[Change]) -> Option<Vec<[u16; 4]>> {
+fn core_widths(
+    robot: &Robot,
+    recording: &Recording,
+    contacts: &[ContactChange],
+) -> Option<Vec<[u16; 4]>> {
     let log = &recording.frames;
     let commands = core_run::play_with_contacts(
         *robot.firmware(),
@@ -265,7 +271,7 @@ fn end_message(state: &State) -> String {
 }
 
 /// The script that the options ask for.
-fn script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
+fn choose_script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
     let given_ms = args.duration.map(|seconds| (seconds * 1000.0) as u64);
     if let Some(path) = &args.script {
         let script = read_script(path)?;
@@ -292,8 +298,8 @@ fn script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
         )));
     }
     Ok(args.gait.as_deref().map_or_else(
-        || Script::of_gaits(&tour::demonstration_gaits(robot), ms),
-        |gait| Script::of_gaits(&[gait], ms),
+        || Script::from_gaits(&tour::demonstration_gaits(robot), ms),
+        |gait| Script::from_gaits(&[gait], ms),
     ))
 }
 
@@ -305,8 +311,8 @@ pub(crate) fn read_script(path: &Path) -> Result<Script, Failure> {
 }
 
 /// A progress bar of the simulated time.
-pub(crate) fn simulated_time(end_ms: u64) -> ProgressBar {
-    bar(
+pub(crate) fn time_progress_bar(end_ms: u64) -> ProgressBar {
+    progress_bar(
         end_ms as usize,
         "{bar:40} {pos}/{len} ms simulated, {elapsed}",
     )

@@ -15,14 +15,14 @@ const DEFAULT_PRESS_MS: u64 = 200;
 pub struct Press {
     input: String,
     /// Time at which the contact closes, ms since power-on.
-    from: u64,
+    from_ms: u64,
     /// Time at which the contact opens, ms since power-on.
-    to: u64,
+    to_ms: u64,
 }
 
 /// A contact that closes or opens.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Change {
+pub struct ContactChange {
     /// Milliseconds since power-on.
     pub ms: u64,
     /// Arduino number of the contact's pin.
@@ -31,7 +31,7 @@ pub struct Change {
     pub is_closed: bool,
 }
 
-impl Change {
+impl ContactChange {
     /// Closes or opens the contact.
     pub fn apply(&self, uno: &mut Uno) {
         uno.set_contact(Pin::arduino(self.pin), self.is_closed);
@@ -53,7 +53,11 @@ impl FromStr for Press {
             return Err("it ends before it begins".to_owned());
         }
         let input = input.to_owned();
-        Ok(Self { input, from, to })
+        Ok(Self {
+            input,
+            from_ms: from,
+            to_ms: to,
+        })
     }
 }
 
@@ -61,7 +65,7 @@ impl FromStr for Press {
 ///
 /// # Errors
 /// Fails if the robot does not have the input of a press.
-pub fn changes(presses: &[Press], robot: &Robot) -> Result<Vec<Change>, Failure> {
+pub fn contact_changes(presses: &[Press], robot: &Robot) -> Result<Vec<ContactChange>, Failure> {
     let mut all = Vec::new();
     for press in presses {
         let mut inputs = robot.inputs().each();
@@ -70,8 +74,8 @@ pub fn changes(presses: &[Press], robot: &Robot) -> Result<Vec<Change>, Failure>
             let message = format!("robot.toml has no [input.{name}] for --press");
             return Err(Failure::Input(message));
         };
-        let change = |ms, is_closed| Change { ms, pin, is_closed };
-        all.extend([change(press.from, true), change(press.to, false)]);
+        let change = |ms, is_closed| ContactChange { ms, pin, is_closed };
+        all.extend([change(press.from_ms, true), change(press.to_ms, false)]);
     }
     all.sort_by_key(|change| (change.ms, change.is_closed));
     Ok(all)
@@ -83,7 +87,11 @@ mod tests {
 
     fn press(input: &str, from: u64, to: u64) -> Press {
         let input = input.to_owned();
-        Press { input, from, to }
+        Press {
+            input,
+            from_ms: from,
+            to_ms: to,
+        }
     }
 
     #[test]

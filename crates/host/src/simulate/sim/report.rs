@@ -8,7 +8,7 @@ use simulated_uno::Uno;
 
 use super::analysis::{CommandPath, Run, Safety, ServoReport};
 use super::session::DialogueLine;
-use crate::shared::number::tidy;
+use crate::shared::number::round_decimals;
 
 /// All results of a run.
 #[derive(Debug, Serialize)]
@@ -104,7 +104,7 @@ impl Report<'_> {
         )?;
         for path in &self.way {
             let cell = |part: Option<f64>, digits: usize| {
-                let tidy = |part| format!("{:.digits$}", tidy(part, digits as i32));
+                let tidy = |part| format!("{:.digits$}", round_decimals(part, digits as i32));
                 part.map_or("-".to_owned(), tidy)
             };
             writeln!(
@@ -118,7 +118,7 @@ impl Report<'_> {
                 cell(path.turn, 2)
             )?;
         }
-        if self.frames.robot.drive().lags() {
+        if self.frames.robot.drive().can_lag() {
             writeln!(
                 out,
                 "Legs are where their servos are here; `lizard twin` lets them lag."
@@ -139,8 +139,8 @@ impl Report<'_> {
                 min.value,
                 min.margin,
                 min.seconds,
-                tidy(self.safety.stroke[0], 1),
-                tidy(self.safety.stroke[1], 1)
+                round_decimals(self.safety.stroke[0], 1),
+                round_decimals(self.safety.stroke[1], 1)
             )?;
         }
         if let Some(reason) = &self.safety.first_violation {

@@ -1,6 +1,6 @@
 //! A script: commands for the robot, each with its time.
 
-use super::press::Change;
+use super::press::ContactChange;
 
 /// A command at a time.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -17,7 +17,7 @@ pub struct Script {
     /// The commands in order of time.
     pub steps: Vec<Step>,
     /// The changes of the robot's contacts, in order of time.
-    pub contacts: Vec<Change>,
+    pub contacts: Vec<ContactChange>,
     /// The end of the run, ms since power-on.
     pub end_ms: u64,
 }
@@ -54,7 +54,7 @@ impl Script {
 
     /// A script of `ms` milliseconds, at least [`Self::SHORTEST_MS`]: boot, the
     /// gaits one after the other, stop, status, rest.
-    pub fn of_gaits(gaits: &[&str], ms: u64) -> Self {
+    pub fn from_gaits(gaits: &[&str], ms: u64) -> Self {
         let time = ms - STAND_MS - CLOSE_MS;
         // The last gait gets four parts of the time, each earlier gait five.
         let start = |n: usize| STAND_MS + time * 5 * n as u64 / (4 + 5 * (gaits.len() as u64 - 1));
@@ -161,15 +161,15 @@ mod tests {
     #[test]
     fn the_built_in_scripts_are_in_order_and_end_in_time() {
         for script in [
-            Script::of_gaits(&["walk", "left"], Script::SHORTEST_MS),
-            Script::of_gaits(&["arc-left"], 9000),
-            Script::of_gaits(&[], 9000),
+            Script::from_gaits(&["walk", "left"], Script::SHORTEST_MS),
+            Script::from_gaits(&["arc-left"], 9000),
+            Script::from_gaits(&[], 9000),
         ] {
             assert!(script.steps.is_sorted_by_key(|step| step.ms));
             assert!(script.steps.iter().all(|step| step.ms < script.end_ms));
         }
         assert_eq!(
-            Script::of_gaits(&["arc-left"], 9000).steps[0].command,
+            Script::from_gaits(&["arc-left"], 9000).steps[0].command,
             "arc left"
         );
     }

@@ -11,7 +11,7 @@ use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 use simulated_uno::{Fidelity, Image, Port, Radio, State, Uno};
 
-use super::press::Change;
+use super::press::ContactChange;
 use crate::Failure;
 use crate::shared::files::{self, note_input};
 
@@ -30,11 +30,11 @@ pub(super) fn new_board(boot_loader: &Path, fidelity: Fidelity) -> Result<Uno, F
 ///
 /// # Errors
 /// Fails if there is no pseudo terminal, or something other than such a link already exists at `link`.
-pub(super) fn until_interrupted(
+pub(super) fn serve_until_interrupted(
     mut uno: Uno,
     link: Option<&Path>,
     radio: Option<Radio>,
-    contacts: &[Change],
+    contacts: &[ContactChange],
 ) -> Result<(), Failure> {
     let mut port = Port::new().map_err(|error| {
         Failure::Impossible(format!("this machine gives no pseudo terminal: {error}"))
@@ -49,7 +49,7 @@ pub(super) fn until_interrupted(
     let name = match link {
         Some(link) => {
             // Called before the link is made, so that a signal between the two calls does not leave the link behind.
-            remove_at_end(link.to_owned(), port.path().to_owned())?;
+            remove_link_on_signal(link.to_owned(), port.path().to_owned())?;
             make_link(link, port.path())?;
             link.to_owned()
         }
@@ -95,7 +95,7 @@ fn end_message(state: &State, flash: &[u8], port: &Path) -> String {
 
 /// Removes the link when a signal, such as that of Ctrl-C, ends the program, unless the link points to another file
 /// by then. Then lets the signal have its default effect.
-fn remove_at_end(link: PathBuf, port: PathBuf) -> Result<(), Failure> {
+fn remove_link_on_signal(link: PathBuf, port: PathBuf) -> Result<(), Failure> {
     let mut signals = Signals::new([SIGINT, SIGTERM, SIGHUP])
         .map_err(|error| Failure::Impossible(format!("Ctrl-C cannot be waited for: {error}")))?;
     thread::spawn(move || {

@@ -57,7 +57,7 @@ pub struct Recording {
     /// The state in which the firmware ended.
     pub state: State,
     /// Wall time of the run.
-    pub wall: Duration,
+    pub wall_time: Duration,
 }
 
 /// Plays a script from power-on. Calls `on_event` for each event, in order of time.
@@ -83,13 +83,15 @@ pub fn play(
     let mut contacts = script.contacts.iter().peekable();
     let mut ms = 0;
     while ms < script.end_ms && *uno.state() == State::Alive {
-        let until = (ms + FRAME / CYCLES_PER_MS).min(script.end_ms);
+        let slice_end_ms = (ms + FRAME / CYCLES_PER_MS).min(script.end_ms);
         loop {
-            let command = steps.peek().map_or(until, |step| step.ms);
-            if let Some(contact) = contacts.next_if(|contact| contact.ms < until.min(command)) {
+            let next_command_ms = steps.peek().map_or(slice_end_ms, |step| step.ms);
+            if let Some(contact) =
+                contacts.next_if(|contact| contact.ms < slice_end_ms.min(next_command_ms))
+            {
                 uno.run_until_cycle(contact.ms * CYCLES_PER_MS);
                 contact.apply(uno);
-            } else if let Some(step) = steps.next_if(|step| step.ms < until) {
+            } else if let Some(step) = steps.next_if(|step| step.ms < slice_end_ms) {
                 uno.run_until_cycle(step.ms * CYCLES_PER_MS);
                 dialogue.receive(uno)?;
                 dialogue.send(uno, &step.command)?;
@@ -97,10 +99,10 @@ pub fn play(
                 break;
             }
         }
-        uno.run_until_cycle(until * CYCLES_PER_MS);
+        uno.run_until_cycle(slice_end_ms * CYCLES_PER_MS);
         dialogue.receive(uno)?;
         pulses.read(uno.take_edges());
-        ms = until;
+        ms = slice_end_ms;
         (dialogue.on_event)(Event::Time(ms))?;
     }
     dialogue.answers.resize(script.steps.len(), None);
@@ -111,7 +113,7 @@ pub fn play(
         received_by_uno: uno.received_by_uno(),
         cycles: uno.cycle(),
         state: uno.state().clone(),
-        wall: start.elapsed(),
+        wall_time: start.elapsed(),
     })
 }
 

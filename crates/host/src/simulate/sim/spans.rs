@@ -25,13 +25,13 @@ fn changes_motion(command: &str) -> bool {
 
 /// The commands that changed the motion, in order of time, after the initial `stand`. A refused command changes
 /// nothing: the previous one continues.
-pub fn spans(script: &Script, answers: &[Option<String>]) -> Vec<Span> {
+pub fn command_spans(script: &Script, answers: &[Option<String>]) -> Vec<Span> {
     let mut starts = vec![(0.0, "stand")];
     for (step, answer) in script.steps.iter().zip(answers) {
-        let refused = answer
+        let is_refused = answer
             .as_ref()
             .is_some_and(|answer| answer.starts_with("err"));
-        if !refused && changes_motion(&step.command) {
+        if !is_refused && changes_motion(&step.command) {
             starts.push((step.ms as f64 / 1000.0, step.command.as_str()));
         }
     }
@@ -57,7 +57,7 @@ mod tests {
         let script = Script::parse("1000 walk\n2000 pose 0 0 0 0\n3000 watch 5\n4000 rest")
             .expect("it is well formed");
         let answers = ["ok walk", "err 4 beyond travel", "ok watch 5", "ok rest"];
-        let spans = spans(&script, &answers.map(|answer| Some(answer.to_owned())));
+        let spans = command_spans(&script, &answers.map(|answer| Some(answer.to_owned())));
         let found: Vec<(&str, f64, f64)> = spans
             .iter()
             .map(|span| (span.command.as_str(), span.from, span.to))

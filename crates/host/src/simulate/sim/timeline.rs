@@ -19,21 +19,21 @@ const LEFT: f64 = 200.0;
 /// Width of the right margin, px.
 const RIGHT: f64 = 36.0;
 /// Upper edge of the band with the commands, px.
-const COMMANDS: f64 = 88.0;
+const COMMANDS_Y: f64 = 88.0;
 /// Upper edge of the first servo's strip, px.
-const STRIPS: f64 = 132.0;
+const STRIPS_Y: f64 = 132.0;
 /// Height of a servo's strip, px.
 const STRIP: f64 = 104.0;
 /// Distance between two strips, px.
 const STRIP_GAP: f64 = 14.0;
 /// Upper edge of the first row of footfalls, px.
-const FEET: f64 = STRIPS + 4.0 * (STRIP + STRIP_GAP) + 34.0;
+const FEET_Y: f64 = STRIPS_Y + 4.0 * (STRIP + STRIP_GAP) + 34.0;
 /// Height of a row of footfalls, px.
-const FOOT: f64 = 28.0;
+const FOOT_HEIGHT: f64 = 28.0;
 /// Distance between two rows of footfalls, px.
 const FOOT_GAP: f64 = 8.0;
 /// Vertical position of the time axis, px.
-const AXIS: f64 = FEET + 4.0 * (FOOT + FOOT_GAP) + 4.0;
+const AXIS: f64 = FEET_Y + 4.0 * (FOOT_HEIGHT + FOOT_GAP) + 4.0;
 /// Height of the picture, px.
 const HEIGHT: f64 = AXIS + 96.0;
 
@@ -96,16 +96,16 @@ impl Chart<'_> {
         for (n, Span { from, to, command }) in self.spans.iter().enumerate() {
             let (x, end) = (self.x(*from), self.x(*to));
             let fill = if n % 2 == 0 { "#e6e6e6" } else { "#d2d2d2" };
-            group = group.add(rectangle((x, COMMANDS), (end - x, 26.0), fill));
+            group = group.add(rectangle((x, COMMANDS_Y), (end - x, 26.0), fill));
             // A letter takes about 7.5 px. A command that would not fit is left out.
             if command.len() as f64 * 7.5 < end - x {
-                let position = ((x + end) / 2.0, COMMANDS + 18.0);
+                let position = ((x + end) / 2.0, COMMANDS_Y + 18.0);
                 group = group.add(text_middle(command, position, 15.0));
             }
         }
         group.add(text(
             "command",
-            (LEFT - 12.0, COMMANDS + 18.0),
+            (LEFT - 12.0, COMMANDS_Y + 18.0),
             15.0,
             GREY,
             Anchor::End,
@@ -116,7 +116,7 @@ impl Chart<'_> {
     fn draw_marks(&self, mut group: Group) -> Group {
         for span in self.spans.iter().skip(1) {
             let x = self.x(span.from);
-            let mark = line((x, COMMANDS), (x, AXIS), GREY, 1.0);
+            let mark = line((x, COMMANDS_Y), (x, AXIS), GREY, 1.0);
             group = group.add(mark.set("stroke-dasharray", "2 4"));
         }
         group
@@ -127,7 +127,7 @@ impl Chart<'_> {
     fn reach(&self) -> f64 {
         let sweeps = self
             .run
-            .instants()
+            .servo_frames()
             .filter_map(|instant| instant.sweeps)
             .flatten();
         (sweeps.fold(20.0, |largest: f64, sweep| largest.max(sweep.abs())) / 10.0).ceil() * 10.0
@@ -136,7 +136,7 @@ impl Chart<'_> {
 
     /// Adds the strip with a servo's angle over time.
     fn draw_strip(&self, mut group: Group, servo: usize, reach: f64) -> Group {
-        let top = STRIPS + servo as f64 * (STRIP + STRIP_GAP);
+        let top = STRIPS_Y + servo as f64 * (STRIP + STRIP_GAP);
         let neutral = self.run.robot.servos()[servo].neutral;
         let y = |angle: f64| top + STRIP / 2.0 * (1.0 - (angle - neutral) / reach);
         let (start, end) = (self.x(0.0), self.x(self.seconds));
@@ -175,7 +175,7 @@ impl Chart<'_> {
             let position = (LEFT - 8.0, y(angle) + 4.5);
             group = group.add(text(&label, position, 13.0, GREY, Anchor::End));
         }
-        for run in self.runs(servo) {
+        for run in self.angle_curves(servo) {
             let points: Vec<(f64, f64)> = run
                 .iter()
                 .map(|(seconds, angle)| (self.x(*seconds), y(*angle)))
@@ -188,10 +188,10 @@ impl Chart<'_> {
     /// A servo's angle as points (seconds, degrees), one curve for each time span with
     /// pulses. If the pixel columns have many frames each, only the lowest and the highest
     /// angle of a column are kept.
-    fn runs(&self, servo: usize) -> Vec<Vec<(f64, f64)>> {
+    fn angle_curves(&self, servo: usize) -> Vec<Vec<(f64, f64)>> {
         let dense = self.run.log.widths.len() as f64 > 4.0 * (WIDTH - LEFT - RIGHT);
         let mut runs = vec![Curve::default()];
-        for instant in self.run.instants() {
+        for instant in self.run.servo_frames() {
             match (instant.angles, runs.last_mut()) {
                 (Some(angles), Some(run)) => {
                     let column = dense.then(|| self.x(instant.seconds) as i64);
@@ -209,31 +209,36 @@ impl Chart<'_> {
 
     /// Adds the row with the footfalls of a servo's foot.
     fn draw_feet(&self, mut group: Group, servo: usize) -> Group {
-        let top = FEET + servo as f64 * (FOOT + FOOT_GAP);
+        let top = FEET_Y + servo as f64 * (FOOT_HEIGHT + FOOT_GAP);
         let (start, end) = (self.x(0.0), self.x(self.seconds));
         if servo == 0 {
-            let position = (14.0, FEET - 12.0);
+            let position = (14.0, FEET_Y - 12.0);
             group = group.add(text_start("Footfalls", position, 17.0).set("font-weight", "bold"));
             group = self.draw_legend(group);
         }
         group = group
-            .add(rectangle((start, top), (end - start, FOOT), PANEL))
+            .add(rectangle((start, top), (end - start, FOOT_HEIGHT), PANEL))
             .add(text(
                 PLACES[servo],
-                (LEFT - 12.0, top + FOOT / 2.0 + 5.0),
+                (LEFT - 12.0, top + FOOT_HEIGHT / 2.0 + 5.0),
                 15.0,
                 SERVO[servo],
                 Anchor::End,
             ));
-        let stretches = foot_spans(self.run.instants(), servo);
+        let stretches = foot_spans(self.run.servo_frames(), servo);
         if stretches.len() as f64 > (end - start) / 2.0 {
-            let position = ((start + end) / 2.0, top + FOOT / 2.0 + 5.0);
+            let position = ((start + end) / 2.0, top + FOOT_HEIGHT / 2.0 + 5.0);
             let words = "steps shorter than a pixel: simulate less to see them";
             return group.add(text(words, position, 13.0, GREY, Anchor::Middle));
         }
         for FootSpan { phase, from, to } in stretches {
             let (x, width) = (self.x(from), self.x(to) - self.x(from));
-            group = group.add(foot(phase, SERVO[servo], (x, top), (width, FOOT)));
+            group = group.add(draw_foot_span(
+                phase,
+                SERVO[servo],
+                (x, top),
+                (width, FOOT_HEIGHT),
+            ));
         }
         group
     }
@@ -247,10 +252,15 @@ impl Chart<'_> {
         let mut x = LEFT;
         for (phase, words) in entries {
             group = group
-                .add(foot(phase, "#444444", (x, FEET - 25.0), (30.0, 15.0)))
+                .add(draw_foot_span(
+                    phase,
+                    "#444444",
+                    (x, FEET_Y - 25.0),
+                    (30.0, 15.0),
+                ))
                 .add(text(
                     words,
-                    (x + 38.0, FEET - 12.5),
+                    (x + 38.0, FEET_Y - 12.5),
                     14.0,
                     GREY,
                     Anchor::Start,
@@ -293,7 +303,7 @@ impl Chart<'_> {
 
 /// One time span of a footfall row: filled for stance, pale for still, outlined for
 /// swing, so that it is readable without colour.
-fn foot(
+fn draw_foot_span(
     phase: Phase,
     colour: &str,
     at: (f64, f64),

@@ -3,7 +3,7 @@
 use lizard_robot::Robot;
 
 /// Names of the gaits that move a servo, in the order of robot.toml.
-pub fn moving(robot: &Robot) -> Vec<&str> {
+pub fn moving_gaits(robot: &Robot) -> Vec<&str> {
     let moving = robot.gaits().iter().filter(|gait| gait.moves());
     moving.map(|gait| gait.name()).collect()
 }
@@ -11,7 +11,7 @@ pub fn moving(robot: &Robot) -> Vec<&str> {
 /// The gaits of a demonstration: the first moving gait, then the other one that is predicted to turn the robot
 /// most in a cycle. Fewer if the robot has fewer moving gaits.
 pub fn demonstration_gaits(robot: &Robot) -> Vec<&str> {
-    let moving = moving(robot);
+    let moving = moving_gaits(robot);
     let turn = |name: &str| {
         let found = robot.gait(name);
         found.map_or(0.0, |gait| robot.predict(gait).turn.map_or(0.0, f64::abs))
@@ -33,6 +33,6 @@ mod tests {
     fn the_paper_robot_walks_and_turns_left() {
         let robot = crate::shared::robot_file::named("paper");
         assert_eq!(demonstration_gaits(&robot), ["walk", "left"]);
-        assert!(!moving(&robot).contains(&"stand"));
+        assert!(!moving_gaits(&robot).contains(&"stand"));
     }
 }

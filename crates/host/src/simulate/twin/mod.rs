@@ -17,7 +17,7 @@ use crate::shared::progress::Spinner;
 use crate::shared::suggestion::did_you_mean;
 use crate::simulate::sim::script::{Script, Step};
 use crate::simulate::sim::session::{self, Event, Recording};
-use crate::simulate::sim::{frame, read_script, simulated_time, spans, supplies, tour};
+use crate::simulate::sim::{frame, read_script, spans, supplies, time_progress_bar, tour};
 use crate::{Failure, RobotFile};
 use replay::Replay;
 use report::Report;
@@ -77,7 +77,7 @@ enum ServoArg {
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let script = script(&args, &robot)?;
-    let mut image = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?.image;
+    let mut image = firmware::select_firmware(args.elf.as_deref(), &args.robot, &robot)?.image;
     let routine = args.gait.as_deref().and_then(|name| robot.routine(name));
     let has_inputs = routine.is_some_and(Routine::has_inputs);
     if has_inputs {
@@ -89,14 +89,14 @@ pub fn run(args: Args) -> Result<(), Failure> {
         ServoArg::Own => ServoModel::of(&robot),
         ServoArg::Ideal => ServoModel::Ideal,
     };
-    let spans = spans::spans(&script, &recording.answers);
-    let paced = script
+    let spans = spans::command_spans(&script, &recording.answers);
+    let is_paced = script
         .steps
         .iter()
         .any(|step| step.command.starts_with("speed"));
     let spinner = Spinner::new("walking every frame");
     let replay = Replay::of(&robot, &recording.frames, spans, model);
-    let report = Report::of(&robot, &replay, model, paced);
+    let report = Report::of(&robot, &replay, model, is_paced);
     drop(spinner);
 
     let mut out = io::stdout().lock();
@@ -120,7 +120,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
 /// Fails if the firmware ends before the script does.
 pub(crate) fn record(uno: &mut Uno, robot: &Robot, script: &Script) -> Result<Recording, Failure> {
     supplies::connect(uno, robot);
-    let bar = simulated_time(script.end_ms);
+    let bar = time_progress_bar(script.end_ms);
     let pins = frame::servo_pins(robot);
     let recording = session::play(uno, pins, script, |event| {
         if let Event::Time(ms) = event {
@@ -142,7 +142,7 @@ fn script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
         return read_script(path);
     }
     Ok(match &args.gait {
-        None => walk_script(robot, &tour::moving(robot)),
+        None => walk_script(robot, &tour::moving_gaits(robot)),
         Some(name) => match robot.routine(name) {
             Some(routine) => round_script(robot, routine),
             None => walk_script(robot, &[moving_gait(robot, name)?.name()]),
@@ -176,7 +176,7 @@ pub(crate) fn moving_gait<'a>(robot: &'a Robot, name: &str) -> Result<&'a Checke
         Some(gait) if gait.moves() => Ok(gait),
         Some(_) => Err(Failure::Input(format!("the gait `{name}` moves no servo"))),
         None => {
-            let gaits = tour::moving(robot);
+            let gaits = tour::moving_gaits(robot);
             Err(Failure::Input(format!(
                 "robot.toml has no gait `{name}`; those that move are {}{}",
                 gaits.join(", "),

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::replay::Replay;
 use crate::shared::json;
-use crate::shared::number::tidy;
+use crate::shared::number::round_decimals;
 
 /// A report of a run: a row for each command.
 pub struct Report {
@@ -167,7 +167,7 @@ impl Report {
     /// Fails if writing fails.
     pub fn json(&self, out: &mut impl Write) -> io::Result<()> {
         for row in &self.rows {
-            json::line(out, row)?;
+            json::write_line(out, row)?;
         }
         Ok(())
     }
@@ -241,10 +241,10 @@ impl Report {
                 out,
                 "\n{} from {from:.2} to {to:.2} s: {}",
                 row.command,
-                sentence(way)
+                describe_displacement(way)
             )?;
             if let Some(round) = &row.round {
-                writeln!(out, "predicted: {}", sentence(round))?;
+                writeln!(out, "predicted: {}", describe_displacement(round))?;
             }
         }
         let undecided =
@@ -257,7 +257,7 @@ impl Report {
 }
 
 /// Describes a displacement as text for the user.
-fn sentence(way: &PathParts) -> String {
+fn describe_displacement(way: &PathParts) -> String {
     let [forward, left, turn] = [way.forward, way.left, way.turn].map(|part| format_part(part, 1));
     format!("ahead {forward} mm, left {left} mm, turn {turn} deg")
 }
@@ -265,6 +265,6 @@ fn sentence(way: &PathParts) -> String {
 /// Formats a part of a displacement with its sign, never as `-0`; an unknown part becomes a dash.
 pub fn format_part(part: Option<f64>, decimals: usize) -> String {
     part.map_or("-".to_owned(), |value| {
-        format!("{:+.decimals$}", tidy(value, decimals as i32))
+        format!("{:+.decimals$}", round_decimals(value, decimals as i32))
     })
 }

@@ -11,7 +11,7 @@ use super::replay::Replay;
 use super::report::format_part;
 use crate::Failure;
 use crate::shared::json;
-use crate::shared::progress::bar;
+use crate::shared::progress::progress_bar;
 
 /// The spread of a gait's displacement in one cycle.
 #[derive(Debug, Serialize)]
@@ -25,12 +25,12 @@ struct Spread {
     /// The same percentiles of the turn, deg counter-clockwise.
     turn: [f64; 3],
     /// The servos' load at each pace on each supply.
-    lines: Vec<Line>,
+    lines: Vec<EffortShare>,
 }
 
 /// The largest share of a servo's torque-speed line that a gait uses.
 #[derive(Debug, Serialize)]
-struct Line {
+struct EffortShare {
     /// Percent of the gait's own pace.
     pace: f64,
     /// Supply of the servos, V.
@@ -39,7 +39,7 @@ struct Line {
     share: [f64; 2],
 }
 
-impl Line {
+impl EffortShare {
     /// The shares of a gait on every supply, at each of the paces `PACES`.
     fn all(robot: &Robot, gait: &CheckedGait) -> Vec<Self> {
         let efforts = [1.0, FRICTION.1].map(|more| {
@@ -78,7 +78,7 @@ pub fn run(
         .iter()
         .filter_map(|stage| robot.gait(&stage.command).filter(|gait| gait.moves()))
         .collect();
-    let bar = bar(
+    let bar = progress_bar(
         times as usize * gaits.len(),
         "{bar:40} {pos}/{len} walks, {eta}",
     );
@@ -94,12 +94,16 @@ pub fn run(
                 .walked(robot, gait, model)
         };
         let paths: Vec<Travel> = (0..u64::from(times)).map(path).collect();
-        spreads.push(Spread::of(gait.name(), &paths, Line::all(robot, gait)));
+        spreads.push(Spread::of(
+            gait.name(),
+            &paths,
+            EffortShare::all(robot, gait),
+        ));
     }
     bar.finish_and_clear();
     if json {
         for spread in &spreads {
-            json::line(out, spread)?;
+            json::write_line(out, spread)?;
         }
     } else {
         print(&spreads, times, out)?;
@@ -108,7 +112,7 @@ pub fn run(
 }
 
 impl Spread {
-    fn of(gait: &str, paths: &[Travel], lines: Vec<Line>) -> Self {
+    fn of(gait: &str, paths: &[Travel], lines: Vec<EffortShare>) -> Self {
         let part = |quantity: fn(&Travel) -> f64| {
             quantiles(paths.iter().map(quantity).collect(), [0.05, 0.5, 0.95])
         };
@@ -161,7 +165,7 @@ fn print(spreads: &[Spread], times: u32, out: &mut impl Write) -> io::Result<()>
         return Ok(());
     };
     write!(out, "{:<12}", "gait")?;
-    for Line { pace, volts, .. } in &first.lines {
+    for EffortShare { pace, volts, .. } in &first.lines {
         write!(out, "{:>18}", format!("{pace:.0} %, {volts:.2} V"))?;
     }
     writeln!(out)?;

@@ -41,7 +41,7 @@ fn a_crank_is_drawn_and_named_at_its_neutral_angle() {
                 turn_between(neutral, direction(&crank)).abs() < 0.02,
                 "{name} {servo}"
             );
-            let label = &drawing.named(&format!("angle-{servo}")).words;
+            let label = &drawing.element_by_id(&format!("angle-{servo}")).content;
             assert_eq!(*label, format!("{neutral:.2}°"), "{name} {servo}");
         }
     }
@@ -71,7 +71,7 @@ fn the_trim_of_the_example_turns_the_crank_to_its_neutral_angle() {
             turn_between(neutral, direction(&should)).abs() < 0.02,
             "{name}"
         );
-        let words = drawing.0.iter().map(|element| element.words.as_str());
+        let words = drawing.0.iter().map(|element| element.content.as_str());
         let trims: Vec<&str> = words
             .filter_map(|words| words.strip_prefix("trim 1 "))
             .collect();
@@ -101,7 +101,7 @@ fn the_spline_has_25_teeth_and_a_crank_is_off_by_half_a_tooth_at_most() {
     let words: String = drawing
         .0
         .iter()
-        .map(|element| element.words.as_str())
+        .map(|element| element.content.as_str())
         .collect();
     assert!(
         words.contains("14.4° apart") && words.contains("7.2° at most"),

@@ -11,16 +11,16 @@ pub type Point = (f64, f64);
 pub struct Element {
     pub tag: String,
     attributes: HashMap<String, String>,
-    pub words: String,
+    pub content: String,
 }
 
 impl Element {
-    pub fn text(&self, key: &str) -> &str {
+    pub fn attribute(&self, key: &str) -> &str {
         self.attributes.get(key).map_or("", String::as_str)
     }
 
     pub fn number(&self, key: &str) -> f64 {
-        let text = self.text(key);
+        let text = self.attribute(key);
         let number = text
             .parse()
             .unwrap_or_else(|_| panic!("{key}={text} of {self:?}"));
@@ -41,7 +41,7 @@ impl Element {
                 vec![(x, y), (x + width, y + height)]
             }
             "polyline" | "polygon" => self
-                .text("points")
+                .attribute("points")
                 .split(' ')
                 .map(|pair| {
                     let (x, y) = pair.split_once(',').expect("x,y");
@@ -68,10 +68,10 @@ impl Drawing {
                             .iter()
                             .map(|(key, value)| (key.clone(), value.to_string()))
                             .collect(),
-                        words: String::new(),
+                        content: String::new(),
                     });
                 }
-                Event::Text(words) => elements.last_mut().expect("a tag").words += words,
+                Event::Text(words) => elements.last_mut().expect("a tag").content += words,
                 Event::Error(error) => panic!("{error}"),
                 _ => {}
             }
@@ -79,23 +79,26 @@ impl Drawing {
         Self(elements)
     }
 
-    pub fn named(&self, id: &str) -> &Element {
-        let mut found = self.0.iter().filter(|element| element.text("id") == id);
+    pub fn element_by_id(&self, id: &str) -> &Element {
+        let mut found = self
+            .0
+            .iter()
+            .filter(|element| element.attribute("id") == id);
         let element = found.next().unwrap_or_else(|| panic!("no {id}"));
         assert!(found.next().is_none(), "{id} twice");
         element
     }
 
     pub fn path(&self, id: &str) -> Vec<Point> {
-        self.named(id).points()
+        self.element_by_id(id).points()
     }
 
     /// Every wire and rail by its name.
     pub fn wires(&self) -> Vec<(&str, Vec<Point>)> {
         self.0
             .iter()
-            .filter(|element| element.tag == "polyline" && !element.text("id").is_empty())
-            .map(|element| (element.text("id"), element.points()))
+            .filter(|element| element.tag == "polyline" && !element.attribute("id").is_empty())
+            .map(|element| (element.attribute("id"), element.points()))
             .collect()
     }
 }

@@ -29,10 +29,10 @@ fn everything_is_on_the_page_and_large_enough_to_be_read() {
                     let size = element.number("font-size");
                     assert!(size >= 12.0, "{name}: {element:?}");
                     // A character of a wide font is about 0.55 of the font size wide.
-                    let long = 0.55 * size * element.words.chars().count() as f64;
+                    let long = 0.55 * size * element.content.chars().count() as f64;
                     let (x, y) = points[0];
-                    if element.text("transform").is_empty() {
-                        let (left, right) = match element.text("text-anchor") {
+                    if element.attribute("transform").is_empty() {
+                        let (left, right) = match element.attribute("text-anchor") {
                             "start" => (0.0, long),
                             "end" => (long, 0.0),
                             _ => (long / 2.0, long / 2.0),

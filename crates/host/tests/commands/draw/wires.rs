@@ -84,10 +84,10 @@ impl<'a> Nets<'a> {
     fn nearest_terminal(&self, point: Point) -> String {
         let distance = |end: &Point| (end.0 - point.0).hypot(end.1 - point.1);
         let ends = self.drawing.0.iter().filter(|element| {
-            let id = element.text("id");
+            let id = element.attribute("id");
             element.tag == "circle" && (id.starts_with("end-") || id.starts_with("pin-"))
         });
-        let ends = ends.map(|element| (distance(&element.points()[0]), element.text("id")));
+        let ends = ends.map(|element| (distance(&element.points()[0]), element.attribute("id")));
         let (nearest, name) = ends.min_by(|a, b| a.0.total_cmp(&b.0)).expect("an end");
         assert!(
             nearest <= MAX_TERMINAL_DISTANCE,
@@ -114,7 +114,7 @@ impl<'a> Nets<'a> {
     fn assert_joined(&self, names: &[&str]) {
         for name in names {
             // Fails if the drawing does not have the name.
-            self.drawing.named(name);
+            self.drawing.element_by_id(name);
             assert_eq!(
                 self.root(name),
                 self.root(names[0]),
@@ -180,7 +180,7 @@ fn every_component_is_joined_to_what_it_needs_and_to_nothing_else() {
             apart.push(nets.root(&signal));
             let words = format!("to {pin}");
             assert!(
-                drawing.0.iter().any(|element| element.words == words),
+                drawing.0.iter().any(|element| element.content == words),
                 "{name}"
             );
             // The servo's resistor leads from its terminal position to ground.
@@ -212,10 +212,13 @@ fn removing_any_link_splits_its_strip() {
     for link in links {
         let mut drawing = Drawing::of(&svg);
         assert!(
-            drawing.0.iter().any(|element| element.text("id") == link),
+            drawing
+                .0
+                .iter()
+                .any(|element| element.attribute("id") == link),
             "{link}"
         );
-        drawing.0.retain(|element| element.text("id") != link);
+        drawing.0.retain(|element| element.attribute("id") != link);
         let nets = Nets::of(&drawing);
         let ends = match link.starts_with("link-ground") {
             true => ["end-ground-1-wire", "end-ground-10-wire"],
@@ -294,7 +297,7 @@ fn the_radio_is_an_option_with_a_diode_to_d0_and_a_divider_from_d1() {
         drawing
             .0
             .iter()
-            .any(|element| element.words.contains(words))
+            .any(|element| element.content.contains(words))
     };
     assert!(printed("Option: a radio module") && printed("1 k\u{3a9}") && printed("2 k\u{3a9}"));
 }
@@ -306,7 +309,7 @@ fn inputs_are_an_option_of_a_robot_that_has_them_between_their_pins_and_ground()
         Drawing::of(&wiring(&Robot::parse(&text).expect("a robot")))
     };
     let has_entry = |drawing: &Drawing, name: &str| {
-        let mut ids = drawing.0.iter().map(|element| element.text("id"));
+        let mut ids = drawing.0.iter().map(|element| element.attribute("id"));
         ids.any(|id| id == name)
     };
     let (button, nose) = ("[input.button]\npin = \"A1\"", "[input.nose]\npin = \"D7\"");
@@ -335,7 +338,8 @@ fn inputs_are_an_option_of_a_robot_that_has_them_between_their_pins_and_ground()
         let from = name.strip_prefix("input-").expect("it begins so");
         assert_eq!(path[0], both.path(&format!("end-{from}"))[0]);
     }
-    let fill = |drawing: &Drawing, pin: &str| drawing.named(pin).text("fill").to_string();
+    let fill =
+        |drawing: &Drawing, pin: &str| drawing.element_by_id(pin).attribute("fill").to_string();
     assert_eq!(fill(&both, "pin-A1"), fill(&both, "pin-D9"));
     assert_ne!(fill(&none, "pin-A1"), fill(&none, "pin-D9"));
 }
@@ -379,8 +383,8 @@ fn a_rail_that_is_measured_has_its_pin_marked() {
     );
     let drawing = Drawing::of(&wiring(&Robot::parse(&text).expect("a robot")));
     let words = "A3 measures the +5 V strip, divided by 2.50.";
-    assert!(drawing.0.iter().any(|element| element.words == words));
-    let fill = |pin: &str| drawing.named(pin).text("fill").to_string();
+    assert!(drawing.0.iter().any(|element| element.content == words));
+    let fill = |pin: &str| drawing.element_by_id(pin).attribute("fill").to_string();
     assert_eq!(fill("pin-A3"), fill("pin-D9"));
     assert_ne!(fill("pin-A3"), fill("pin-A2"));
 }

@@ -81,7 +81,7 @@ fn a_film_of_a_horn_gives_the_lines_of_a_servo_that_turns_the_other_way() {
     check(&object, "us_per_degree", 10.0 / servo.gain, 0.05);
     check(&object, "s_per_60_deg", 60.0 / servo.own_rate(), 0.003);
     assert_eq!(object["turns_the_other_way"], true);
-    let text = measure(&["40"]).success();
+    let text = measure(&["40"]).expect_success();
     for words in [
         "It turns the other way than robot.toml says",
         "[servo.A1]\nus_per_degree = -11.",
@@ -89,7 +89,7 @@ fn a_film_of_a_horn_gives_the_lines_of_a_servo_that_turns_the_other_way() {
     ] {
         assert!(text.contains(words), "{words}: {text}");
     }
-    let new = measure(&["40", "--volts", "4.5", "--output", "measured.toml"]).success();
+    let new = measure(&["40", "--volts", "4.5", "--output", "measured.toml"]).expect_success();
     assert!(
         new.contains("Written: measured.toml, where [limits] slew is still 1000 deg/s"),
         "{new}"
@@ -117,9 +117,9 @@ fn a_film_of_a_horn_gives_the_lines_of_a_servo_that_turns_the_other_way() {
     );
     // Only the measured keys, a table header and blank lines are added.
     assert!(after.lines().count() - before.lines().count() < 8);
-    let kept = measure(&["40", "--output", "jig.toml"]).refusal();
+    let kept = measure(&["40", "--output", "jig.toml"]).expect_refusal();
     assert!(kept.contains("jig.toml would be overwritten"), "{kept}");
-    let refused = measure(&["90"]).refusal();
+    let refused = measure(&["90"]).expect_refusal();
     assert!(
         refused.contains("the tag on the deck, or on the horn, is"),
         "{refused}"
@@ -136,7 +136,7 @@ fn steps_are_printed_only_for_a_robot_whose_pulses_outrun_its_servos() {
         ];
         run_in(&folder, &line, "")
     };
-    let lines = steps("A1", "jig.toml").success();
+    let lines = steps("A1", "jig.toml").expect_success();
     assert!(
         lines.starts_with("factory\npose 138.59 41.41 318.59 221.41\n"),
         "{lines}"
@@ -145,12 +145,12 @@ fn steps_are_printed_only_for_a_robot_whose_pulses_outrun_its_servos() {
         lines.contains("\npose 108.59 41.41 318.59 221.41\ndir 1 -\ndir 1 +\n"),
         "{lines}"
     );
-    let slow = steps("A1", "paper").refusal();
+    let slow = steps("A1", "paper").expect_refusal();
     assert!(
         slow.contains("write slew = 1000.0 under [limits]"),
         "{slow}"
     );
-    let none = steps("B1", "jig.toml").refusal();
+    let none = steps("B1", "jig.toml").expect_refusal();
     assert!(none.contains("it is A1, A2, A3 or A4"), "{none}");
 }
 
@@ -176,7 +176,7 @@ fn a_film_of_a_slide_gives_friction_and_says_what_another_film_would_tell() {
         slide.sliding,
         0.02,
     );
-    let text = measure(&[]).success();
+    let text = measure(&[]).expect_success();
     for words in [
         "[ground]\nfriction = 0.",
         "A film with the head uphill gives friction_back_over_forward",

@@ -38,30 +38,38 @@ fn keys(files: &[&PathBuf], more: &[&str]) -> Outcome {
 #[test]
 fn files_without_information_are_refused_with_advice() {
     let foreign = file("foreign.json", r#"{"gaits":[{"gait":"walk","speed":100}]}"#);
-    let message = keys(&[&foreign], &[]).refusal();
+    let message = keys(&[&foreign], &[]).expect_refusal();
     assert!(
         message.contains("foreign.json") && message.contains("missing field `forward`"),
         "{message}"
     );
     let empty = file("empty.json", "");
-    let message = keys(&[&empty], &[]).refusal();
+    let message = keys(&[&empty], &[]).expect_refusal();
     assert!(
         message.contains("empty.json: this is not what"),
         "{message}"
     );
     let without = file("without.json", &ways(&[]));
-    let message = keys(&[&without], &[]).refusal();
+    let message = keys(&[&without], &[]).expect_refusal();
     assert!(message.contains("none of these gaits"), "{message}");
     let unknown = file("unknown.json", &ways(&[object("wakl", [30.0, 0.0, 0.0])]));
-    assert!(keys(&[&unknown], &[]).refusal().contains("no gait `wakl`"));
+    assert!(
+        keys(&[&unknown], &[])
+            .expect_refusal()
+            .contains("no gait `wakl`")
+    );
     let still = file("still.json", &ways(&[object("stand", [0.0; 3])]));
-    assert!(keys(&[&still], &[]).refusal().contains("moves no servo"));
+    assert!(
+        keys(&[&still], &[])
+            .expect_refusal()
+            .contains("moves no servo")
+    );
     let other = ways(&[object("walk", [30.0, 0.0, 0.0])])
         .replace(r#""speed":100"#, r#""speed":100,"period_expected":1.25"#);
     let other = file("other.json", &other);
     assert!(
         keys(&[&other], &[])
-            .refusal()
+            .expect_refusal()
             .contains("1.00 s by this robot.toml, but took 1.25 s")
     );
 }
@@ -71,9 +79,9 @@ fn no_robot_and_no_input_is_replaced() {
     let way = file("way.json", &ways(&[object("walk", [30.0, 0.0, 0.0])]));
     let text = read("robots/grain.toml");
     let other = file("other-robot.toml", &text);
-    let message = keys(&[&way], &["--output", other.to_str().expect("a name")]).refusal();
+    let message = keys(&[&way], &["--output", other.to_str().expect("a name")]).expect_refusal();
     assert!(message.contains("describes a robot"), "{message}");
-    let message = keys(&[&way], &["--output", way.to_str().expect("a name")]).refusal();
+    let message = keys(&[&way], &["--output", way.to_str().expect("a name")]).expect_refusal();
     assert!(message.contains("this command reads it"), "{message}");
     assert_eq!(fs::read_to_string(&other).expect("it is there"), text);
 }
@@ -117,5 +125,5 @@ fn a_new_robot_differs_in_the_lines_that_were_measured_and_in_no_other() {
     }
     assert!(new.contains("friction_back_over_forward = ") && new != old);
     let check = run_in(scratch(), &["gaits", "--robot", shown], "");
-    assert!(check.success().contains("walk"));
+    assert!(check.expect_success().contains("walk"));
 }

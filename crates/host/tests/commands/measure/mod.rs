@@ -25,7 +25,7 @@ use serde_json::Value;
 
 use crate::program::{lizard, run_in, scratch};
 use render::{Spot, Studio};
-use walk::{Show, Varies, Walk, gait, truth};
+use walk::{Show, Variation, Walk, gait, truth};
 
 /// Pictures per second of the films.
 const RATE: f64 = 8.0;
@@ -44,9 +44,9 @@ fn studio() -> Studio {
 fn walked() -> Walk {
     let gait = gait("walk");
     let start = -truth(&gait).forward * 2.5;
-    let varies = Varies {
+    let varies = Variation {
         cycle: [0.1, 0.1, 0.002],
-        ..Varies::default()
+        ..Variation::default()
     };
     Walk::new(&gait, [start, 0.0, 0.0], 5, varies, &mut Rng::with_seed(4))
 }
@@ -172,7 +172,7 @@ fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
     let [least, most] = ["least", "most"].map(|end| range[end].as_f64().expect("a number"));
     assert!(least < predicted - 5.0 && predicted + 1.0 < most, "{range}");
     assert_eq!(range["least_by"], "mounting of the legs");
-    let table = measure(&[]).success();
+    let table = measure(&[]).expect_success();
     assert!(table.contains("agrees"), "{table}");
     // The example in docs/measure.md comes from such a film.
     let page = crate::program::read("docs/measure.md");
@@ -187,7 +187,7 @@ fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
         &["measure", folder, "--height", "95", "--csv"],
         "",
     )
-    .success();
+    .expect_success();
     assert!(
         path.starts_with("seconds,forward,left,heading\n0.0000,"),
         "{path}"
@@ -202,7 +202,7 @@ fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
         &["measure", folder, "--gait", "left", "--height", "95"],
         "",
     );
-    let words = another.refusal();
+    let words = another.expect_refusal();
     assert!(words.contains("was it another gait"), "{words}");
     assert!(words.trim_end().ends_with("; it is like walk"), "{words}");
 }
@@ -220,9 +220,9 @@ fn gaits(object: &Value) -> Vec<(&str, usize)> {
 #[test]
 fn gaits_in_a_film_are_distinguished_by_their_names_or_by_their_paths() {
     let [walk, left] = ["walk", "left"].map(gait);
-    let varies = Varies {
+    let varies = Variation {
         cycle: [0.1, 0.1, 0.002],
-        ..Varies::default()
+        ..Variation::default()
     };
     let order = [(&walk, 3), (&left, 4), (&walk, 3)];
     let show = Show::new(
@@ -274,7 +274,7 @@ fn gaits_in_a_film_are_distinguished_by_their_names_or_by_their_paths() {
         assert!(drawn.contains(words), "{words}: {drawn}");
     }
     // Refused: a gait that is not in the film, and gaits in the wrong order.
-    let missing = measure(&["--gait", "walk,left,walk,back"]).refusal();
+    let missing = measure(&["--gait", "walk,left,walk,back"]).expect_refusal();
     assert!(
         missing.starts_with("lizard: 3 walks between rests of")
             && missing.contains("names 4: walk, left, walk, back\n")
@@ -282,7 +282,7 @@ fn gaits_in_a_film_are_distinguished_by_their_names_or_by_their_paths() {
             && missing.trim_end().ends_with("no walk is like back"),
         "{missing}"
     );
-    let order = measure(&["--gait", "left,walk,walk"]).refusal();
+    let order = measure(&["--gait", "left,walk,walk"]).expect_refusal();
     assert!(
         order.contains(" s, left: the path is not that of this gait")
             && order.trim_end().ends_with("; it is like walk"),
@@ -302,7 +302,7 @@ fn impossible_measurements_are_refused_with_a_message() {
     fs::write(inside("untimed/frame-001.png"), "").expect("a file");
     let words = |words: &str| {
         let all: Vec<&str> = words.split(' ').collect();
-        run_in(&folder, &all, "").refusal()
+        run_in(&folder, &all, "").expect_refusal()
     };
     for (line, message) in [
         ("measure none --gait walk", "lizard: there is no film none"),
@@ -429,7 +429,7 @@ fn json_of_a_film_has_no_value_that_is_no_number() {
     assert!(!text.contains("null"), "{text}");
     assert!(
         lizard("measure --help", "")
-            .success()
+            .expect_success()
             .contains("standard error of the mean")
     );
 }

@@ -7,9 +7,9 @@ use lizard_film::{Picture, read, sheet};
 use crate::program::{run, scratch};
 
 /// Pixels per mm.
-const PIXELS: f64 = 3.0;
+const PIXELS_PER_MM: f64 = 3.0;
 /// Millimetres per PDF point.
-const POINT: f64 = 25.4 / 72.0;
+const MM_PER_POINT: f64 = 25.4 / 72.0;
 
 /// The operands of each line of `text` that ends in the PDF operator `operator`.
 fn operands<'a>(text: &'a str, operator: &'a str) -> impl Iterator<Item = Vec<f64>> + 'a {
@@ -27,7 +27,7 @@ fn operands<'a>(text: &'a str, operator: &'a str) -> impl Iterator<Item = Vec<f6
 fn sheet_on(paper: &str) -> (String, [f64; 2]) {
     let path = scratch().join(format!("sheets/{paper}.pdf"));
     let name = path.to_str().expect("a name");
-    let printed = run(&["measure", "sheet", "--paper", paper, "--output", name]).success();
+    let printed = run(&["measure", "sheet", "--paper", paper, "--output", name]).expect_success();
     assert!(printed.contains("print it at 100 %"), "{printed}");
     let text = String::from_utf8_lossy(&fs::read(&path).expect("it is written")).into_owned();
     let (_, media) = text.split_once("/MediaBox [").expect("a size");
@@ -36,15 +36,15 @@ fn sheet_on(paper: &str) -> (String, [f64; 2]) {
         .split(' ')
         .map(|word| word.parse().expect("a number"))
         .collect();
-    let size = [size[2] * POINT, size[3] * POINT];
+    let size = [size[2] * MM_PER_POINT, size[3] * MM_PER_POINT];
     (text, size)
 }
 
 /// Draws the filled rectangles of a page as a picture. Also returns the extent of the ink: the least and
 /// greatest distance from the left edge, then from the lower edge, mm.
-fn drawn(text: &str, [width, height]: [f64; 2]) -> (Picture, [[f64; 2]; 2]) {
-    let columns = (width * PIXELS) as usize;
-    let rows = (height * PIXELS) as usize;
+fn rasterize(text: &str, [width, height]: [f64; 2]) -> (Picture, [[f64; 2]; 2]) {
+    let columns = (width * PIXELS_PER_MM) as usize;
+    let rows = (height * PIXELS_PER_MM) as usize;
     let mut grey = vec![255; columns * rows];
     let mut ink = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
     let mut lines = text.lines().peekable();
@@ -56,7 +56,7 @@ fn drawn(text: &str, [width, height]: [f64; 2]) -> (Picture, [[f64; 2]; 2]) {
         let Some(rectangle) = operands(line, " re").next() else {
             continue;
         };
-        let [x, y, w, h] = [0, 1, 2, 3].map(|i| rectangle[i] * POINT);
+        let [x, y, w, h] = [0, 1, 2, 3].map(|i| rectangle[i] * MM_PER_POINT);
         for (i, (from, length)) in [(x, w), (y, h)].into_iter().enumerate() {
             ink[i] = [ink[i][0].min(from), ink[i][1].max(from + length)];
         }
@@ -64,8 +64,9 @@ fn drawn(text: &str, [width, height]: [f64; 2]) -> (Picture, [[f64; 2]; 2]) {
             continue;
         }
         // A pixel is filled if its centre lies in the rectangle.
-        let range =
-            |from: f64, to: f64| (from * PIXELS + 0.5) as usize..(to * PIXELS + 0.5) as usize;
+        let range = |from: f64, to: f64| {
+            (from * PIXELS_PER_MM + 0.5) as usize..(to * PIXELS_PER_MM + 0.5) as usize
+        };
         for row in range(height - y - h, height - y) {
             for column in range(x, x + w) {
                 grey[row * columns + column] = fill;
@@ -83,7 +84,7 @@ fn a_printed_sheet_has_the_tags_of_the_strips_and_the_card_in_true_size() {
             (page[0] - size[0]).abs() < 0.1 && (page[1] - size[1]).abs() < 0.1,
             "{page:?}"
         );
-        let (picture, ink) = drawn(&text, page);
+        let (picture, ink) = rasterize(&text, page);
         for (i, [low, high]) in ink.into_iter().enumerate() {
             assert!(
                 low > 5.0 && high < page[i] - 5.0,
@@ -94,7 +95,7 @@ fn a_printed_sheet_has_the_tags_of_the_strips_and_the_card_in_true_size() {
         tags.sort_by_key(|tag| tag.id);
         let ids: Vec<usize> = tags.iter().map(|tag| tag.id).collect();
         assert_eq!(ids, [0, 1, 2, 3, 4], "{paper}");
-        let distance = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]) / PIXELS;
+        let distance = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]) / PIXELS_PER_MM;
         for tag in &tags {
             let [left, right, ..] = tag.corners;
             let edge = distance(left, right);
@@ -121,14 +122,14 @@ fn a_strip_has_a_line_of_100_mm_from_end_to_end() {
     let rectangles: Vec<Vec<f64>> = operands(&text, " re").collect();
     let lines = rectangles
         .iter()
-        .filter(|line| (line[2] * POINT - sheet::RULER).abs() < 0.01);
+        .filter(|line| (line[2] * MM_PER_POINT - sheet::RULER).abs() < 0.01);
     assert_eq!(lines.count(), sheet::STRIPS);
     // The outer edges of the two end ticks are the end points of the line.
     let ticks = rectangles
         .iter()
-        .filter(|line| (line[3] * POINT - 8.0).abs() < 0.01);
+        .filter(|line| (line[3] * MM_PER_POINT - 8.0).abs() < 0.01);
     let ticks: Vec<[f64; 2]> = ticks
-        .map(|tick| [tick[0] * POINT, (tick[0] + tick[2]) * POINT])
+        .map(|tick| [tick[0] * MM_PER_POINT, (tick[0] + tick[2]) * MM_PER_POINT])
         .collect();
     assert_eq!(ticks.len(), 2 * sheet::STRIPS);
     assert!(

@@ -141,7 +141,7 @@ fn the_table_of_the_papers_figures_has_each_once_with_command_and_file() {
     let expected: Vec<String> = figures.chain(others).collect();
     let names: Vec<&str> = rows.iter().map(|row| row[0]).collect();
     assert_eq!(names, expected);
-    let charts = lizard("draw charts --help", "").success();
+    let charts = lizard("draw charts --help", "").expect_success();
     for row in &rows {
         let [name, _, command, files, agrees] = row[..] else {
             panic!("{row:?}")
@@ -179,7 +179,7 @@ fn the_table_of_the_papers_figures_has_each_once_with_command_and_file() {
 #[test]
 fn what_the_page_says_about_the_papers_walk_is_what_the_gaits_make() {
     let page = read("docs/paper.md").replace('\n', " ");
-    let rows = lizard(&paper("gaits --json"), "").success();
+    let rows = lizard(&paper("gaits --json"), "").expect_success();
     let predicted = |gait: &str, key: &str| -> f64 {
         let rows = rows
             .lines()
@@ -192,7 +192,7 @@ fn what_the_page_says_about_the_papers_walk_is_what_the_gaits_make() {
     };
     let (walk, left) = (predicted("walk", "forward"), predicted("left", "turn"));
     let moved = 80.0_f64.hypot(55.0) * left.to_radians();
-    let table = lizard(&paper("gaits --sensitivity"), "").success();
+    let table = lizard(&paper("gaits --sensitivity"), "").expect_success();
     let numbers = |from: &str, name: &str| -> Vec<f64> {
         let (_, rows) = table.split_once(from).expect(from);
         let row = rows

@@ -249,7 +249,7 @@ fn an_angle_that_a_servo_cannot_reach_is_not_safe() {
     let at = |theta8: f64| {
         let pose =
             format!("pose --json --theta1 138.59 --theta4 41.41 --theta8 {theta8} --theta5 221.41");
-        lizard(&robot.of(&pose), "").json()
+        lizard(&robot.add_to(&pose), "").json()
     };
     assert_eq!(at(318.590378 + 20.0)["safe"], true, "the end of the travel");
     let beyond = at(318.590378 + 20.1);
@@ -259,7 +259,7 @@ fn an_angle_that_a_servo_cannot_reach_is_not_safe() {
         "servo A3 would turn +20.1 deg from neutral to 338.7 deg, its travel is 266.1 to 338.6 deg"
     );
     let page = lizard(
-        &robot.of("pose --theta1 138.59 --theta4 41.41 --theta8 338.8 --theta5 221.41"),
+        &robot.add_to("pose --theta1 138.59 --theta4 41.41 --theta8 338.8 --theta5 221.41"),
         "",
     );
     assert!(
@@ -267,7 +267,7 @@ fn an_angle_that_a_servo_cannot_reach_is_not_safe() {
         "{}",
         page.out
     );
-    let table = lizard(&robot.of("pose"), "138.59,41.41,338.8,221.41\n");
+    let table = lizard(&robot.add_to("pose"), "138.59,41.41,338.8,221.41\n");
     assert!(table.out.contains("| servo A3 would turn"), "{}", table.out);
     // The inverse kinematics, too, reports the tail point of that pose as unreachable.
     let tail: Vec<f64> = beyond["tail"]
@@ -277,7 +277,7 @@ fn an_angle_that_a_servo_cannot_reach_is_not_safe() {
         .map(|v| v.as_f64().unwrap())
         .collect();
     let inverse = lizard(
-        &robot.of(&format!("pose --json --tail {} {}", tail[0], tail[1])),
+        &robot.add_to(&format!("pose --json --tail {} {}", tail[0], tail[1])),
         "",
     )
     .json();

@@ -3,37 +3,38 @@
 use crate::layers::body::Mount;
 use crate::model::node::Node;
 use crate::model::pieces::Piece;
-use crate::model::text::{escaped, joined, round};
+use crate::model::text::{escape_attribute, join_numbers, round};
 use crate::model::writer::Writer;
 
 /// Time step of the simulation, s.
 const STEP: f64 = 0.0002;
 /// Stiffness (`solref`) of constraints and limits: time constant, s, and damping ratio.
-const HARD: &str = "0.002 1";
+const CONSTRAINT_SOLREF: &str = "0.002 1";
 /// Stiffness (`solref`) of contacts: time constant, s, and damping ratio. A soft floor would hide part of a foot's
 /// excess length.
-pub(super) const CONTACT: &str = "0.001 1";
+pub(super) const CONTACT_SOLREF: &str = "0.001 1";
 /// Impedance (`solimp`) of constraints and limits.
-const STIFF: &str = "0.99 0.999 0.0001";
+const CONSTRAINT_SOLIMP: &str = "0.99 0.999 0.0001";
 
 impl Writer<'_> {
     /// Writes the whole file.
     pub(in super::super) fn write_mjcf(&mut self) {
-        let name = escaped(&self.scene.name);
+        let name = escape_attribute(&self.scene.name);
         self.xml.open(format!(r#"mujoco model="{name}""#));
         self.write_options();
         self.xml.open("custom");
         let ratio = round(self.scene.ratio);
         let data = format!(r#"numeric name="back over forward" data="{ratio}""#);
-        self.xml.leaf(data);
-        if self.scene.bursts {
-            self.xml.leaf(r#"numeric name="bursts" data="1""#);
+        self.xml.write_empty_element(data);
+        if self.scene.drives_in_bursts {
+            self.xml
+                .write_empty_element(r#"numeric name="bursts" data="1""#);
         }
         if let Some(course) = &self.scene.course {
-            let (begin, period) = (round(course.begin), round(course.period));
+            let (begin, period) = (round(course.measure_start), round(course.period));
             let count = course.count;
             let data = format!(r#"numeric name="cycle" data="{begin} {period} {count}""#);
-            self.xml.leaf(data);
+            self.xml.write_empty_element(data);
         }
         self.xml.close();
         self.write_assets();
@@ -46,21 +47,23 @@ impl Writer<'_> {
 
     fn write_options(&mut self) {
         let xml = &mut self.xml;
-        xml.leaf(r#"compiler angle="radian" autolimits="true""#);
+        xml.write_empty_element(r#"compiler angle="radian" autolimits="true""#);
         // Feet of a few grams chatter with MuJoCo's default contact settings.
-        xml.leaf(format!(
+        xml.write_empty_element(format!(
             r#"option timestep="{STEP}" gravity="{}" integrator="implicitfast" cone="elliptic" impratio="100" noslip_iterations="20""#,
             self.scene.floor.gravity()
         ));
         xml.open("visual");
-        xml.leaf(r#"map znear="0.01""#);
-        xml.leaf(r#"global offwidth="1280" offheight="960""#);
+        xml.write_empty_element(r#"map znear="0.01""#);
+        xml.write_empty_element(r#"global offwidth="1280" offheight="960""#);
         xml.close();
-        xml.leaf(r#"statistic extent="0.3" center="0 0 0.03""#);
+        xml.write_empty_element(r#"statistic extent="0.3" center="0 0 0.03""#);
         xml.open("default");
-        xml.leaf(r#"geom contype="0" conaffinity="0""#);
-        xml.leaf(r#"mesh scale="0.001 0.001 0.001""#);
-        xml.leaf(format!(r#"equality solref="{HARD}" solimp="{STIFF}""#));
+        xml.write_empty_element(r#"geom contype="0" conaffinity="0""#);
+        xml.write_empty_element(r#"mesh scale="0.001 0.001 0.001""#);
+        xml.write_empty_element(format!(
+            r#"equality solref="{CONSTRAINT_SOLREF}" solimp="{CONSTRAINT_SOLIMP}""#
+        ));
         xml.close();
     }
 
@@ -69,20 +72,22 @@ impl Writer<'_> {
         let shown = self.visible_pieces();
         let xml = &mut self.xml;
         xml.open("asset");
-        xml.leaf(format!(
+        xml.write_empty_element(format!(
             r#"texture name="sky" type="skybox" builtin="gradient" rgb1="0.9 0.95 1" rgb2="0.6 0.7 0.8" {SIZE}"#
         ));
-        xml.leaf(format!(
+        xml.write_empty_element(format!(
             r#"texture name="floor" type="2d" builtin="checker" rgb1="0.75 0.75 0.72" rgb2="0.82 0.82 0.8" {SIZE}"#
         ));
         // Each square of the checker pattern becomes 5 cm wide.
-        xml.leaf(r#"material name="floor" texture="floor" texrepeat="10 10" texuniform="true""#);
+        xml.write_empty_element(
+            r#"material name="floor" texture="floor" texrepeat="10 10" texuniform="true""#,
+        );
         for Piece { name, mesh, .. } in shown {
             let corners = mesh.corners.as_flattened().iter();
             let vertex = corners.map(|part| (part * 1e5).round() / 1e5 + 0.0);
             let face = mesh.triangles.as_flattened().iter();
-            let (vertex, face) = (joined(vertex), joined(face));
-            xml.leaf(format!(
+            let (vertex, face) = (join_numbers(vertex), join_numbers(face));
+            xml.write_empty_element(format!(
                 r#"mesh name="{name}" vertex="{vertex}" face="{face}""#
             ));
         }
@@ -92,14 +97,14 @@ impl Writer<'_> {
     fn write_world(&mut self) {
         self.xml.open("worldbody");
         self.xml
-            .leaf(r#"light pos="0.3 -0.3 1" dir="-0.3 0.3 -1" type="directional""#);
+            .write_empty_element(r#"light pos="0.3 -0.3 1" dir="-0.3 0.3 -1" type="directional""#);
         self.write_floor();
-        self.write_body(Node::Of(Mount::Chassis));
+        self.write_body(Node::OnMount(Mount::Chassis));
         self.xml.close();
     }
 }
 
 /// The attributes that make a joint's range limits stiff.
 pub(super) fn limits() -> String {
-    format!(r#"solreflimit="{HARD}" solimplimit="{STIFF}""#)
+    format!(r#"solreflimit="{CONSTRAINT_SOLREF}" solimplimit="{CONSTRAINT_SOLIMP}""#)
 }

@@ -6,16 +6,16 @@ use lizard_robot::servo::NAMES;
 use crate::layers::body::Mount;
 use crate::model::closed;
 use crate::model::node::Node;
-use crate::model::text::{MILLI, joined, metres, round};
+use crate::model::text::{MILLI, join_numbers, metres, round};
 use crate::model::writer::Writer;
 
 impl Writer<'_> {
     pub(super) fn write_loops(&mut self) {
         self.xml.open("equality");
-        for closed in closed::all(self.assembly, self.scene.pull.is_some()) {
+        for closed in closed::cut_joints(self.assembly, self.scene.pull.is_some()) {
             let [first, second] = closed.bodies.map(Node::name);
             let (name, anchor) = (closed.name, metres([closed.at.x, closed.at.y, 0.0]));
-            self.xml.leaf(format!(
+            self.xml.write_empty_element(format!(
                 r#"connect name="{name}" body1="{first}" body2="{second}" anchor="{anchor}""#
             ));
         }
@@ -33,12 +33,12 @@ impl Writer<'_> {
             );
             let joint = match self.has_play() {
                 true => Node::Horn(servo),
-                false => Node::Of(Mount::Link(servo)),
+                false => Node::OnMount(Mount::Link(servo)),
             };
             let (joint, (smallest, largest)) =
                 (joint.name(), self.assembly.robot().servos()[servo].travel());
-            let range = joined([smallest, largest].map(|angle| round(angle.to_radians())));
-            self.xml.leaf(format!(
+            let range = join_numbers([smallest, largest].map(|angle| round(angle.to_radians())));
+            self.xml.write_empty_element(format!(
                 r#"position name="{name}" joint="{joint}" kp="{gain}" forcerange="{} {stall}" ctrlrange="{range}""#,
                 -stall
             ));
@@ -53,13 +53,14 @@ impl Writer<'_> {
         if let Some(course) = &self.scene.course {
             for (frame, targets) in course.frames.iter().enumerate() {
                 let (gait, time) = (&course.gait, round(frame as f64 / FRAMES_PER_SECOND));
-                let targets = joined(targets.map(|angle| round(angle.to_radians())));
-                self.xml.leaf(format!(
+                let targets = join_numbers(targets.map(|angle| round(angle.to_radians())));
+                self.xml.write_empty_element(format!(
                     r#"key name="{gait} {time:.2}" time="{time}" ctrl="{targets}""#
                 ));
             }
         }
-        self.xml.leaf(r#"key name="home" ctrl="0 0 0 0""#);
+        self.xml
+            .write_empty_element(r#"key name="home" ctrl="0 0 0 0""#);
         self.xml.close();
     }
 }

@@ -1,9 +1,9 @@
 //! The floor and the pads on it, in the MJCF file.
 
-use super::document::CONTACT;
+use super::document::CONTACT_SOLREF;
 use crate::model::floor::{Block, Floor};
 use crate::model::scene::Pads;
-use crate::model::text::{MILLI, joined, metres, round};
+use crate::model::text::{MILLI, join_numbers, metres, round};
 use crate::model::writer::Writer;
 use lizard_robot::GRAVITY;
 use lizard_robot::servo::LEGS;
@@ -20,21 +20,21 @@ fn disc(radius: f64, high: f64) -> String {
 impl Floor {
     /// Gravity in the frame of the inclined floor: right, forward, up, m/s^2.
     pub(super) fn gravity(&self) -> String {
-        let (sin, cos) = self.rises.to_radians().sin_cos();
-        joined([0.0, -GRAVITY * sin, -GRAVITY * cos].map(round))
+        let (sin, cos) = self.slope.to_radians().sin_cos();
+        join_numbers([0.0, -GRAVITY * sin, -GRAVITY * cos].map(round))
     }
 }
 
 impl Writer<'_> {
     pub(super) fn write_floor(&mut self) {
-        self.xml.leaf(
+        self.xml.write_empty_element(
             r#"geom name="floor" type="plane" size="0 0 0.05" material="floor" conaffinity="1""#,
         );
         for block in &self.scene.floor.blocks {
             let Block {
-                at: [x, y],
+                centre: [x, y],
                 size,
-                turned,
+                rotation: turned,
             } = block;
             // The box is twice as high as the block; its lower half is under the floor.
             let [wide, long, high] = *size;
@@ -42,7 +42,7 @@ impl Writer<'_> {
                 metres([wide / 2.0, long / 2.0, high]),
                 metres([*x, *y, 0.0]),
             );
-            self.xml.leaf(format!(
+            self.xml.write_empty_element(format!(
                 r#"geom type="box" size="{half}" pos="{at}" euler="0 0 {}" rgba="0.7 0.6 0.5 1" conaffinity="1""#,
                 round(turned.to_radians())
             ));
@@ -81,8 +81,8 @@ impl Writer<'_> {
 
     fn write_pad_shape(&mut self, servo: usize, name: &str, shape: &str, at: [f64; 3]) {
         let (leg, at, friction) = (LEGS[servo], metres(at), self.scene.floor.friction[servo]);
-        self.xml.leaf(format!(
-            r#"geom name="pad {leg}{name}" {shape} pos="{at}" group="3" contype="1" priority="1" condim="3" friction="{friction} 0 0" solref="{CONTACT}" solimp="0.95 0.99 0.0005""#
+        self.xml.write_empty_element(format!(
+            r#"geom name="pad {leg}{name}" {shape} pos="{at}" group="3" contype="1" priority="1" condim="3" friction="{friction} 0 0" solref="{CONTACT_SOLREF}" solimp="0.95 0.99 0.0005""#
         ));
     }
 }

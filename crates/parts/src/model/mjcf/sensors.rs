@@ -15,22 +15,24 @@ impl Writer<'_> {
         self.xml.open("sensor");
         for name in NAMES {
             for (what, kind) in [("angle", "pos"), ("rate", "vel"), ("torque", "frc")] {
-                self.xml.leaf(format!(
+                self.xml.write_empty_element(format!(
                     r#"actuator{kind} name="{name} {what}" actuator="{name}""#
                 ));
             }
         }
         for leg in LEGS {
             self.xml
-                .leaf(format!(r#"touch name="load {leg}" site="pad {leg}""#));
+                .write_empty_element(format!(r#"touch name="load {leg}" site="pad {leg}""#));
         }
         let chassis = r#"objtype="xbody" objname="chassis""#;
-        self.xml.leaf(format!(r#"framepos name="place" {chassis}"#));
         self.xml
-            .leaf(format!(r#"framequat name="direction" {chassis}"#));
+            .write_empty_element(format!(r#"framepos name="place" {chassis}"#));
         self.xml
-            .leaf(r#"velocimeter name="velocity" site="chassis""#);
-        self.xml.leaf(r#"gyro name="gyro" site="chassis""#);
+            .write_empty_element(format!(r#"framequat name="direction" {chassis}"#));
+        self.xml
+            .write_empty_element(r#"velocimeter name="velocity" site="chassis""#);
+        self.xml
+            .write_empty_element(r#"gyro name="gyro" site="chassis""#);
         self.xml.close();
     }
 
@@ -39,7 +41,7 @@ impl Writer<'_> {
         let radius = self.assembly.robot().parts().pad.radius;
         let (leg, at) = (LEGS[servo], metres(self.pad_middle(servo)));
         let size = round(SITE * radius * MILLI);
-        self.xml.leaf(format!(
+        self.xml.write_empty_element(format!(
             r#"site name="pad {leg}" type="sphere" size="{size}" pos="{at}" group="3""#
         ));
     }

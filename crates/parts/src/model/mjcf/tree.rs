@@ -7,7 +7,7 @@ use crate::layers::body::Mount;
 use crate::model::looks::Material;
 use crate::model::node::{Freedom, Node};
 use crate::model::scene::Pull;
-use crate::model::text::{MILLI, joined, metres, round};
+use crate::model::text::{MILLI, join_numbers, metres, round};
 use crate::model::writer::Writer;
 
 impl Writer<'_> {
@@ -15,8 +15,8 @@ impl Writer<'_> {
         let place = self.place_on_parent(node);
         let is_chassis = self.parent(node).is_none();
         let up = if is_chassis { self.height() } else { 0.0 };
-        let half = place.turn.angle().to_radians() / 2.0;
-        let (name, at) = (node.name(), metres([place.at.x, place.at.y, up]));
+        let half = place.x_axis.angle().to_radians() / 2.0;
+        let (name, at) = (node.name(), metres([place.origin.x, place.origin.y, up]));
         let (cos, sin) = (round(half.cos()), round(half.sin()));
         self.xml.open(format!(
             r#"body name="{name}" pos="{at}" quat="{cos} 0 0 {sin}""#
@@ -24,8 +24,8 @@ impl Writer<'_> {
         self.write_joint(node);
         let mass = self.mass(node);
         let (centre, grams) = (metres(mass.centre()), round(mass.mass * MILLI));
-        let tensor = joined(mass.written_tensor());
-        self.xml.leaf(format!(
+        let tensor = join_numbers(mass.written_tensor());
+        self.xml.write_empty_element(format!(
             r#"inertial pos="{centre}" mass="{grams}" fullinertia="{tensor}""#
         ));
         for piece in self
@@ -35,15 +35,16 @@ impl Writer<'_> {
         {
             let (name, colour) = (&piece.name, Material::of(piece.kind).colour);
             self.xml
-                .leaf(format!(r#"geom type="mesh" mesh="{name}" rgba="{colour}""#));
+                .write_empty_element(format!(r#"geom type="mesh" mesh="{name}" rgba="{colour}""#));
         }
         if let Node::Pad(servo) = node {
             self.write_pad(servo);
             self.write_pad_site(servo);
         }
         if is_chassis {
-            self.xml.leaf(r#"site name="chassis" group="3""#);
-            self.xml.leaf(
+            self.xml
+                .write_empty_element(r#"site name="chassis" group="3""#);
+            self.xml.write_empty_element(
                 r#"camera name="beside" mode="trackcom" pos="0.24 -0.21 0.2" xyaxes="0.66 0.75 0 -0.39 0.34 0.86""#,
             );
         }
@@ -60,7 +61,8 @@ impl Writer<'_> {
         let name = node.name();
         let (kind, axis) = match node.freedom() {
             Freedom::Free => {
-                self.xml.leaf(format!(r#"freejoint name="{name}""#));
+                self.xml
+                    .write_empty_element(format!(r#"freejoint name="{name}""#));
                 return;
             }
             Freedom::Turns => ("hinge", "0 0 1"),
@@ -69,7 +71,7 @@ impl Writer<'_> {
         };
         let mut joint = format!(r#"joint name="{name}" type="{kind}" axis="{axis}""#);
         let joints = self.scene.motors.joints;
-        if let Some(servo) = self.motor_on(node) {
+        if let Some(servo) = self.driving_servo(node) {
             // Back-EMF reduces the motor's torque as it turns faster. Seen through the gears, its rotor has far
             // more inertia than a leg, so it smooths the steps of the pulses.
             let motor = self.scene.motors.each[servo];
@@ -78,19 +80,19 @@ impl Writer<'_> {
             joint += &format!(r#" damping="{damping}" armature="{armature}""#);
             joint += &friction_loss(joints.drag * MILLI);
         } else if matches!(node.freedom(), Freedom::Turns) {
-            joint += &friction_loss(self.scene.pins * MILLI);
+            joint += &friction_loss(self.scene.pin_friction * MILLI);
         }
         if matches!(node.freedom(), Freedom::SlidesAlongX) && !matches!(node, Node::Slot(_)) {
             joint += &friction_loss(joints.slider);
         }
         match (node, self.scene.pull) {
-            (Node::Of(Mount::Link(_)), _) if self.has_play() => {
+            (Node::OnMount(Mount::Link(_)), _) if self.has_play() => {
                 let (play, limits) = (round(self.scene.play.to_radians()), limits());
                 // Grease: it damps a link that moves freely within its play.
                 joint += &format!(r#" range="{} {play}" {limits} damping="0.00001""#, -play);
             }
             (Node::Pad(_), _) => {
-                let [stiffness, damping] = self.leaf();
+                let [stiffness, damping] = self.leaf_spring();
                 joint += &format!(r#" stiffness="{stiffness}" damping="{damping}""#);
             }
             (Node::Slot(_), Some(Pull { force, rate })) => {
@@ -102,7 +104,7 @@ impl Writer<'_> {
             }
             _ => {}
         }
-        self.xml.leaf(joint);
+        self.xml.write_empty_element(joint);
     }
 }
 

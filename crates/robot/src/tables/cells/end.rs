@@ -4,8 +4,8 @@
 //! most crank length times angle, and the line `k` between the tips changes by at most the sum. Three bounds follow:
 //!
 //! * The distance of the tips is in a range, and so is the sine between the couplers, the type-2 margin;
-//!   [`bounds::End::least`] is its smallest value. The tips cannot cross if their distance along the base is more
-//!   than the two tips can move.
+//!   [`bounds::EndErrors::min_type2`] is its smallest value. The tips cannot cross if their distance along the base
+//!   is more than the two tips can move.
 //! * From `a u2 - b u3 = k`, with couplers of directions `u2` and `u3` over the line `k`: the left coupler turns by
 //!   at most `|dk| / (a sin(theta3 - theta2))`, and the right one by the same with `b` instead of `a`. Each crank
 //!   turns by at most half the width of its range. So the type-1 margin, a sine, is smaller than at the centre by
@@ -15,7 +15,7 @@
 //! The guard computes with integers. Its margins are smaller than these by at most their error bounds, and must
 //! still keep the guard's limits.
 
-use lizard_core::guard::bounds::{self, DIRECTION};
+use lizard_core::guard::bounds::{self, MAX_DIRECTION_ERROR};
 use lizard_core::numbers::limits::Limits;
 use lizard_core::numbers::section::Content;
 use lizard_core::numbers::units::Sine;
@@ -28,7 +28,7 @@ use crate::units::ONE_Q15;
 pub(super) struct EndConditions {
     end: End,
     bars: FiveBar,
-    integers: bounds::Bars,
+    integers: bounds::RoundedBars,
     type2: f64,
     type1: f64,
     leg: f64,
@@ -42,7 +42,7 @@ impl EndConditions {
         Self {
             end,
             bars: lizard.end(end),
-            integers: bounds::Bars {
+            integers: bounds::RoundedBars {
                 scale: integers.scale,
                 couplers: integers.couplers,
             },
@@ -95,24 +95,24 @@ impl Condition for EndConditions {
             self.bars.crank_left * left.half() + self.bars.crank_right * right.half();
         let apart = pose.gap.length();
         let range = [(apart - crank_movement).max(0.0), apart + crank_movement];
-        let errors = bounds::End::between(&self.bars, self.integers, range);
+        let errors = bounds::EndErrors::between(&self.bars, self.integers, range);
         let uncrossed = pose.gap.x - crank_movement > errors.along + ROUNDING_ALLOWANCE;
         if !(errors.is_known && uncrossed) {
             return Verdict::Open;
         }
-        let coupler_turn = |coupler: f64| crank_movement / (coupler * errors.least);
+        let coupler_turn = |coupler: f64| crank_movement / (coupler * errors.min_type2);
         let elbows = [
             left.half() + coupler_turn(self.bars.coupler_left) + errors.type1_left,
             right.half() + coupler_turn(self.bars.coupler_right) + errors.type1_right,
         ];
-        let is_kept = errors.least - errors.type2 >= self.type2 + ROUNDING_ALLOWANCE
+        let is_kept = errors.min_type2 - errors.type2 >= self.type2 + ROUNDING_ALLOWANCE
             && type1
                 .iter()
                 .zip(elbows)
                 .all(|(margin, less)| margin - less >= self.type1 + ROUNDING_ALLOWANCE)
-            && [left, right]
-                .iter()
-                .all(|span| self.least_leg(span) - DIRECTION >= self.leg + ROUNDING_ALLOWANCE);
+            && [left, right].iter().all(|span| {
+                self.least_leg(span) - MAX_DIRECTION_ERROR >= self.leg + ROUNDING_ALLOWANCE
+            });
         if is_kept {
             Verdict::Kept
         } else {
@@ -159,7 +159,7 @@ mod tests {
         let pose = rule.bars.close(AssemblyMode::Ahead, left, right);
         let pose = pose.expect("it stands");
         let apart = pose.gap.length();
-        let errors = bounds::End::between(&rule.bars, rule.integers, [apart; 2]);
+        let errors = bounds::EndErrors::between(&rule.bars, rule.integers, [apart; 2]);
         let (lower, bound) = if pose.type1_left() < pose.type1_right() {
             (pose.type1_left(), errors.type1_left)
         } else {
@@ -168,7 +168,11 @@ mod tests {
         let limits: [(Limit, f64, f64); 3] = [
             (|rule| &mut rule.type2, pose.type2, errors.type2),
             (|rule| &mut rule.type1, lower, bound),
-            (|rule| &mut rule.leg, left.y.min(right.y), DIRECTION),
+            (
+                |rule| &mut rule.leg,
+                left.y.min(right.y),
+                MAX_DIRECTION_ERROR,
+            ),
         ];
         for (limit, value, bound) in limits {
             assert!(bound > 1e-5 && bound < 0.01, "{bound}");
@@ -202,7 +206,7 @@ mod tests {
         let gap = |left: Span| {
             let left = left.direction();
             rule.bars
-                .shape(AssemblyMode::Ahead, left, right.direction())
+                .pose_unchecked(AssemblyMode::Ahead, left, right.direction())
                 .gap
                 .x
         };

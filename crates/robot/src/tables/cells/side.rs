@@ -30,7 +30,7 @@ impl StrokeCondition {
         Self {
             side,
             slider,
-            error: bounds::slider(&slider, integers),
+            error: bounds::slider_error(&slider, integers),
             min: mm(integers.min),
             max: mm(integers.max),
         }

@@ -224,7 +224,7 @@ fn the_guard_accepts_every_pose_that_all_four_maps_hold() {
             if maps.contains(&pose) {
                 held += 1;
                 assert_eq!(
-                    Clearance::of(&robot, &pose).hazard(&robot),
+                    Clearance::of(&robot, &pose).first_hazard(&robot),
                     None,
                     "{name} {pose:?}"
                 );

@@ -4,10 +4,10 @@ use super::*;
 
 #[test]
 fn a_line_that_is_too_long_is_refused_and_the_next_one_is_read() {
-    let mut dialogue = standing();
+    let mut dialogue = wake_odd_robot();
     let refused = "err 6 a line has at most 63 characters";
-    assert_eq!(dialogue.say(&"stand".repeat(13)), refused);
-    assert_eq!(dialogue.say("stand"), "ok stand");
+    assert_eq!(dialogue.send_line(&"stand".repeat(13)), refused);
+    assert_eq!(dialogue.send_line("stand"), "ok stand");
 }
 
 /// Lines that are refused in every state of the robot.
@@ -58,7 +58,7 @@ proptest! {
         bytes in bytes(),
         frames in 0u32..3,
     ) {
-        let (mut at_once, mut apart) = (standing(), standing());
+        let (mut at_once, mut apart) = (wake_odd_robot(), wake_odd_robot());
         let finals = |printed: Vec<String>| -> Vec<String> {
             printed.into_iter().filter(|line| is_final(line)).collect()
         };
@@ -67,7 +67,7 @@ proptest! {
         let mut printed = Vec::new();
         for byte in &bytes {
             printed.extend(apart.send(&[*byte]));
-            printed.extend(apart.run(frames));
+            printed.extend(apart.run_frames(frames));
         }
         // Only the answer to `status` depends on time; it is the one with `=`.
         let timeless = |printed: Vec<String>| -> Vec<String> {
@@ -82,19 +82,19 @@ proptest! {
         speed in 10u8..=100,
         line in prop::sample::select(REFUSED.to_vec()),
     ) {
-        let [mut asked, mut spared] = [(); 2].map(|()| standing());
+        let [mut asked, mut spared] = [(); 2].map(|()| wake_odd_robot());
         for dialogue in [&mut asked, &mut spared] {
-            dialogue.say(&format!("speed {speed}"));
+            dialogue.send_line(&format!("speed {speed}"));
             for (gait, frames) in &history {
-                dialogue.say(gait);
-                dialogue.run(*frames);
+                dialogue.send_line(gait);
+                dialogue.run_frames(*frames);
             }
         }
-        prop_assert!(asked.say(line).starts_with("err "));
+        prop_assert!(asked.send_line(line).starts_with("err "));
         for _ in 0..40 {
             prop_assert_eq!(asked.frame(), spared.frame());
-            prop_assert_eq!(asked.lines(), spared.lines());
+            prop_assert_eq!(asked.read_lines(), spared.read_lines());
         }
-        prop_assert_eq!(asked.say("status"), spared.say("status"));
+        prop_assert_eq!(asked.send_line("status"), spared.send_line("status"));
     }
 }

@@ -13,7 +13,7 @@ fn cal(dialogue: &mut Dialogue) -> Vec<String> {
 
 #[test]
 fn cal_prints_all_settings_and_no_state() {
-    let mut dialogue = standing();
+    let mut dialogue = wake_odd_robot();
     let untouched = cal(&mut dialogue);
     assert_eq!(untouched.len(), 7);
     assert!(untouched[0].starts_with("# A1 trim 0.00 limit 61.37 215.36 dir "));
@@ -26,7 +26,7 @@ fn cal_prints_all_settings_and_no_state() {
         "boot sway left",
         "deadman 1500",
     ] {
-        dialogue.accept(line);
+        dialogue.expect_accepted(line);
     }
     let printed = cal(&mut dialogue);
     assert!(
@@ -43,40 +43,40 @@ fn cal_prints_all_settings_and_no_state() {
         printed[4..],
         ["# boot sway left", "# deadman 1500", "ok cal"]
     );
-    dialogue.say("sway");
-    dialogue.run(77);
+    dialogue.send_line("sway");
+    dialogue.run_frames(77);
     assert_eq!(cal(&mut dialogue), printed);
-    dialogue.accept("factory");
+    dialogue.expect_accepted("factory");
     assert_eq!(cal(&mut dialogue), untouched);
 }
 
 #[test]
 fn only_saved_settings_survive_power_off() {
-    let mut dialogue = standing();
-    dialogue.say("trim 2 4");
-    dialogue.accept("save");
+    let mut dialogue = wake_odd_robot();
+    dialogue.send_line("trim 2 4");
+    dialogue.expect_accepted("save");
     let saved = cal(&mut dialogue);
-    dialogue.say("trim 2 5");
+    dialogue.send_line("trim 2 5");
     assert_ne!(cal(&mut dialogue), saved);
-    let mut again = Dialogue::with(
+    let mut again = Dialogue::with_memory(
         *Sample::odd(),
         dialogue.board.memory.clone(),
         Restart::default(),
     );
-    assert_eq!(again.lines().len(), 1, "the banner alone");
+    assert_eq!(again.read_lines().len(), 1, "the banner alone");
     assert_eq!(cal(&mut again), saved);
     // Also without a power cycle.
-    dialogue.accept("load");
+    dialogue.expect_accepted("load");
     assert_eq!(cal(&mut dialogue), saved);
 }
 
 #[test]
 fn load_before_the_first_save_and_a_worn_memory_are_refused() {
-    let mut dialogue = standing();
-    dialogue.refuse("load", "9 nothing is saved that could be loaded");
+    let mut dialogue = wake_odd_robot();
+    dialogue.expect_refused("load", "9 nothing is saved that could be loaded");
     dialogue.board.memory.is_worn = true;
-    dialogue.refuse("save", "9 the memory does not keep what is written");
-    dialogue.accept("stand");
+    dialogue.expect_refused("save", "9 the memory does not keep what is written");
+    dialogue.expect_accepted("stand");
 }
 
 #[test]
@@ -90,20 +90,20 @@ fn a_calibration_moves_only_its_servo_at_once_within_the_slew_limit() {
         "load",
         "factory",
     ] {
-        let mut dialogue = standing();
+        let mut dialogue = wake_odd_robot();
         if change == "factory" {
-            dialogue.say("trim 1 15");
+            dialogue.send_line("trim 1 15");
         }
         if change == "load" {
-            dialogue.say("trim 1 -15");
-            dialogue.say("save");
-            dialogue.say("factory");
+            dialogue.send_line("trim 1 -15");
+            dialogue.send_line("save");
+            dialogue.send_line("factory");
         }
-        dialogue.run(100);
-        dialogue.say("pose 145 50 311 224.5");
-        dialogue.run(150);
+        dialogue.run_frames(100);
+        dialogue.send_line("pose 145 50 311 224.5");
+        dialogue.run_frames(150);
         let before = widths(&mut dialogue);
-        dialogue.accept(change);
+        dialogue.expect_accepted(change);
         let motion = dialogue.motion();
         let wanted = motion
             .pose()
@@ -129,14 +129,14 @@ fn a_calibration_moves_only_its_servo_at_once_within_the_slew_limit() {
 
 #[test]
 fn a_calibration_during_a_gait_halts_it_until_the_pulses_have_settled() {
-    let mut dialogue = standing();
-    dialogue.say("sway");
-    dialogue.run(120);
+    let mut dialogue = wake_odd_robot();
+    dialogue.send_line("sway");
+    dialogue.run_frames(120);
     let before = dialogue.motion().phase();
-    dialogue.say("trim 2 15");
-    dialogue.run(1);
+    dialogue.send_line("trim 2 15");
+    dialogue.run_frames(1);
     assert_eq!(dialogue.motion().phase(), before);
-    dialogue.run(200);
+    dialogue.run_frames(200);
     assert_eq!(dialogue.status("gait"), "sway");
     assert_ne!(dialogue.motion().phase(), before);
     let motion = dialogue.motion();
@@ -146,7 +146,7 @@ fn a_calibration_during_a_gait_halts_it_until_the_pulses_have_settled() {
 
 #[test]
 fn a_calibration_too_narrow_for_gaits_or_pose_is_refused_and_changes_nothing() {
-    let mut dialogue = standing();
+    let mut dialogue = wake_odd_robot();
     let before = cal(&mut dialogue);
     for line in [
         "limit 1 140 215",
@@ -154,63 +154,63 @@ fn a_calibration_too_narrow_for_gaits_or_pose_is_refused_and_changes_nothing() {
         "limit 2 131 350",
         "limit 3 309 310",
     ] {
-        let refused = dialogue.say(line);
+        let refused = dialogue.send_line(line);
         assert!(refused.starts_with("err 3 A"), "{line}: {refused}");
         assert!(refused.contains(" would not reach what the gaits need, "));
         assert_eq!(cal(&mut dialogue), before);
     }
-    dialogue.say("pose 150 47.91 309.64 226.18");
-    dialogue.run(2);
-    let refused = dialogue.say("limit 1 61.37 149");
+    dialogue.send_line("pose 150 47.91 309.64 226.18");
+    dialogue.run_frames(2);
+    let refused = dialogue.send_line("limit 1 61.37 149");
     assert!(refused.ends_with(" would not reach where it is or goes, send stand first"));
     assert_eq!(cal(&mut dialogue), before);
-    dialogue.say("stand");
-    dialogue.run(150);
-    dialogue.accept("limit 1 61.37 149");
-    dialogue.refuse("pose 150 47.91 309.64 226.18", "3 A1 reaches 61.37..149.00");
+    dialogue.send_line("stand");
+    dialogue.run_frames(150);
+    dialogue.expect_accepted("limit 1 61.37 149");
+    dialogue.expect_refused("pose 150 47.91 309.64 226.18", "3 A1 reaches 61.37..149.00");
 }
 
 #[test]
 fn a_factory_or_a_load_that_is_refused_changes_nothing() {
-    let mut dialogue = standing();
+    let mut dialogue = wake_odd_robot();
     for line in [
         "trim 1 10",
         "limit 1 61.37 149",
         "save",
         "limit 1 61.37 215.36",
     ] {
-        dialogue.accept(line);
+        dialogue.expect_accepted(line);
     }
-    dialogue.say("pose 155 47.91 309.64 226.18");
-    dialogue.run(150);
+    dialogue.send_line("pose 155 47.91 309.64 226.18");
+    dialogue.run_frames(150);
     let before = cal(&mut dialogue);
-    dialogue.refuse("load", "3 A1 would not reach where it is");
+    dialogue.expect_refused("load", "3 A1 would not reach where it is");
     assert_eq!(cal(&mut dialogue), before);
-    let mut other = standing();
-    other.say("trim 3 4");
+    let mut other = wake_odd_robot();
+    other.send_line("trim 3 4");
     let before = cal(&mut other);
     other.board.memory.bytes_mut()[0] = 0;
-    other.refuse("load", "9 nothing is saved that could be loaded");
+    other.expect_refused("load", "9 nothing is saved that could be loaded");
     assert_eq!(cal(&mut other), before);
     // Settings for other servos are not loaded, and the current ones stay.
-    let mut dialogue = standing();
-    dialogue.say("save");
+    let mut dialogue = wake_odd_robot();
+    dialogue.send_line("save");
     other.board.memory = dialogue.board.memory.clone();
     other.board.memory.bytes_mut()[44] ^= 1;
-    other.refuse("load", "9 ");
+    other.expect_refused("load", "9 ");
     assert_eq!(cal(&mut other), before);
     // A trim moves the travel: the pose below is within the moved travel, but not within robot.toml's.
     let narrow = Sweep(2200);
     let robot = Sample::odd().with(|content| content.calibration[0].max = narrow);
-    let mut narrow = awake(robot);
-    narrow.accept("trim 1 -5");
-    narrow.accept("limit 1 67 149");
-    narrow.run(100);
+    let mut narrow = wake_robot(robot);
+    narrow.expect_accepted("trim 1 -5");
+    narrow.expect_accepted("limit 1 67 149");
+    narrow.run_frames(100);
     let pose = "pose 146 47.91 309.64 226.18";
-    narrow.accept(pose);
-    narrow.run(150);
+    narrow.expect_accepted(pose);
+    narrow.run_frames(150);
     let before = cal(&mut narrow);
-    narrow.refuse("factory", "3 A1 would not reach where it is");
+    narrow.expect_refused("factory", "3 A1 would not reach where it is");
     assert_eq!(cal(&mut narrow), before);
 }
 
@@ -218,18 +218,18 @@ fn a_factory_or_a_load_that_is_refused_changes_nothing() {
 fn settings_too_narrow_for_a_gait_are_not_loaded_and_change_nothing() {
     for servo in Servo::ALL {
         for (beyond, served) in [(1, true), (-1, false)] {
-            let mut dialogue = standing();
+            let mut dialogue = wake_odd_robot();
             let robot = Sample::odd();
             let mut settings = Settings::of(&robot);
             let mut adjustment = settings.servo(servo);
             adjustment.min = Sweep(robot.reach(servo).min.0 - beyond);
             settings.set_servo(servo, adjustment);
-            let mut writing = COPIES[0].write();
+            let mut writing = COPIES[0].start_write();
             while writing.step(settings.bytes(), &mut dialogue.board.memory) == Progress::InProgress
             {
             }
             let before = cal(&mut dialogue);
-            let answer = dialogue.say("load");
+            let answer = dialogue.send_line("load");
             let refused = answer == "err 9 nothing is saved that could be loaded";
             assert_eq!(refused, !served, "{servo:?}: {answer}");
             assert_eq!(cal(&mut dialogue) == before, refused, "{servo:?}");
@@ -239,20 +239,20 @@ fn settings_too_narrow_for_a_gait_are_not_loaded_and_change_nothing() {
 
 #[test]
 fn center_goes_to_the_neutral_pulses_of_robot_toml_with_any_trims() {
-    let mut dialogue = standing();
+    let mut dialogue = wake_odd_robot();
     for line in ["trim 1 3", "trim 2 -4.5", "trim 3 2", "trim 4 -1"] {
-        dialogue.say(line);
+        dialogue.send_line(line);
     }
-    dialogue.run(100);
-    dialogue.refuse("center 1", "2 ");
-    dialogue.accept("center");
-    dialogue.run(200);
+    dialogue.run_frames(100);
+    dialogue.expect_refused("center 1", "2 ");
+    dialogue.expect_accepted("center");
+    dialogue.run_frames(200);
     let neutral = Sample::odd().calibration().map(|servo| servo.neutral.0);
     for (width, neutral) in widths(&mut dialogue).into_iter().zip(neutral) {
         assert!(width.abs_diff(neutral) <= 1, "{width} {neutral}");
     }
-    dialogue.say("stand");
-    dialogue.run(200);
+    dialogue.send_line("stand");
+    dialogue.run_frames(200);
     let motion = dialogue.motion();
     assert_eq!(motion.sent(), &Pose::NEUTRAL.pulses(motion.calibration()));
 }
@@ -267,15 +267,15 @@ fn a_boot_gait_is_the_one_that_was_named_however_alike_the_names_are() {
     };
     for name in names {
         let mut dialogue = Dialogue::power_on(*robot());
-        dialogue.run(30);
+        dialogue.run_frames(30);
         assert_eq!(
-            dialogue.say(&format!("boot {name}")),
+            dialogue.send_line(&format!("boot {name}")),
             format!("ok boot {name}")
         );
-        dialogue.accept("save");
+        dialogue.expect_accepted("save");
         let memory = dialogue.board.memory.clone();
-        let mut again = Dialogue::with(*robot(), memory, Restart::NONE);
-        again.run(151);
+        let mut again = Dialogue::with_memory(*robot(), memory, Restart::NONE);
+        again.run_frames(151);
         assert_eq!(again.status("gait"), name.replace(' ', "-"));
     }
 }
@@ -294,31 +294,31 @@ fn a_travel_that_was_saved_short_of_a_gait_is_not_used_whichever_servo_it_is() {
 
 #[test]
 fn a_travel_may_not_end_before_a_pose_that_is_to_come_next() {
-    let mut dialogue = standing();
-    dialogue.say("sway left");
-    dialogue.run(150);
+    let mut dialogue = wake_odd_robot();
+    dialogue.send_line("sway left");
+    dialogue.run_frames(150);
     // The pose is far outside of all gaits. The gait brakes first, so the move to the pose has not begun yet.
-    dialogue.accept("pose 152 50 311 224.5");
-    dialogue.run(2);
-    let refused = dialogue.say("limit 1 115 150");
+    dialogue.expect_accepted("pose 152 50 311 224.5");
+    dialogue.run_frames(2);
+    let refused = dialogue.send_line("limit 1 115 150");
     assert!(
         refused.starts_with("err 3 A1 would not reach where it is"),
         "{refused}"
     );
-    dialogue.run(300);
+    dialogue.run_frames(300);
     assert_eq!(dialogue.status("pose"), "152.00,50.00,311.00,224.50");
-    dialogue.say("stand");
-    dialogue.run(200);
-    dialogue.accept("limit 1 115 150");
+    dialogue.send_line("stand");
+    dialogue.run_frames(200);
+    dialogue.expect_accepted("limit 1 115 150");
 }
 
 #[test]
 fn after_a_calibration_a_gait_gathers_its_pace_again() {
-    let mut dialogue = standing();
-    dialogue.say("sway left");
-    dialogue.run(150);
+    let mut dialogue = wake_odd_robot();
+    dialogue.send_line("sway left");
+    dialogue.run_frames(150);
     let full = phase_of_a_frame(&mut dialogue);
-    dialogue.say("trim 2 3");
+    dialogue.send_line("trim 2 3");
     let mut phases = Vec::new();
     for _ in 0..100 {
         phases.push(phase_of_a_frame(&mut dialogue));

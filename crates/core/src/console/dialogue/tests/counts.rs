@@ -8,62 +8,68 @@ const LONG_FRAMES: u32 = 400;
 #[test]
 fn a_count_ends_with_one_line_and_the_robot_holds_its_last_pose() {
     for name in ["sway", "sway left", "back"] {
-        let mut dialogue = standing();
-        assert_eq!(dialogue.say(&format!("{name}  2")), format!("ok {name}  2"));
+        let mut dialogue = wake_odd_robot();
+        assert_eq!(
+            dialogue.send_line(&format!("{name}  2")),
+            format!("ok {name}  2")
+        );
         assert_eq!(dialogue.status("gait"), name.replace(' ', "-"));
-        assert_eq!(dialogue.run(LONG_FRAMES), ["# done"]);
+        assert_eq!(dialogue.run_frames(LONG_FRAMES), ["# done"]);
         assert_eq!(
             (dialogue.status("gait"), dialogue.status("fault")),
             ("stop".into(), "none".into())
         );
         let held = dialogue.frame();
-        assert!(dialogue.run(LONG_FRAMES).is_empty());
+        assert!(dialogue.run_frames(LONG_FRAMES).is_empty());
         assert_eq!(dialogue.frame(), held);
     }
-    let mut dialogue = standing();
-    dialogue.say("sway");
-    assert!(dialogue.run(5 * LONG_FRAMES).is_empty(), "no count, no end");
+    let mut dialogue = wake_odd_robot();
+    dialogue.send_line("sway");
+    assert!(
+        dialogue.run_frames(5 * LONG_FRAMES).is_empty(),
+        "no count, no end"
+    );
 }
 
 #[test]
 fn a_wrong_count_is_refused_and_changes_nothing() {
-    let mut dialogue = standing();
+    let mut dialogue = wake_odd_robot();
     let message = "a gait takes a count, 1..999";
     for line in ["sway 0", "sway 1000", "sway 2x", "sway 1 1"] {
-        dialogue.refuse(line, &format!("2 {message}"));
+        dialogue.expect_refused(line, &format!("2 {message}"));
         assert_eq!(dialogue.status("gait"), "stand");
     }
-    dialogue.say("rest");
-    dialogue.refuse("sway 3", "7 servos are resting, send stand first");
-    assert_eq!(dialogue.say("stand 1"), "ok stand 1");
+    dialogue.send_line("rest");
+    dialogue.expect_refused("sway 3", "7 servos are resting, send stand first");
+    assert_eq!(dialogue.send_line("stand 1"), "ok stand 1");
 }
 
 #[test]
 fn whatever_stops_the_robot_ends_a_count_without_done() {
     let begun = || {
-        let mut dialogue = standing();
-        dialogue.say("sway 2");
-        dialogue.run(30);
+        let mut dialogue = wake_odd_robot();
+        dialogue.send_line("sway 2");
+        dialogue.run_frames(30);
         dialogue
     };
     for line in ["stop", "rest", "stand", NEUTRAL, "sway"] {
         let mut dialogue = begun();
-        dialogue.say(line);
-        assert!(dialogue.run(LONG_FRAMES).is_empty(), "{line}");
+        dialogue.send_line(line);
+        assert!(dialogue.run_frames(LONG_FRAMES).is_empty(), "{line}");
     }
     let mut silent = begun();
-    silent.say("deadman 100");
-    let printed = silent.run(LONG_FRAMES);
+    silent.send_line("deadman 100");
+    let printed = silent.run_frames(LONG_FRAMES);
     assert_eq!(printed.len(), 1, "{printed:?}");
     assert!(printed[0].starts_with("# fault: no line"), "{printed:?}");
     let mut weak = begun();
     supply(&mut weak, 4_200);
-    let printed = weak.run(LONG_FRAMES);
+    let printed = weak.run_frames(LONG_FRAMES);
     assert!(!printed.contains(&"# done".to_string()), "{printed:?}");
     assert_eq!(weak.status("fault"), "supply");
-    let mut unsafe_one = standing();
-    unsafe_one.say("stray 9");
-    let printed = unsafe_one.run(5 * LONG_FRAMES);
+    let mut unsafe_one = wake_odd_robot();
+    unsafe_one.send_line("stray 9");
+    let printed = unsafe_one.run_frames(5 * LONG_FRAMES);
     assert_eq!(printed.len(), 1, "{printed:?}");
     assert!(printed[0].starts_with("# held"), "{printed:?}");
 }
@@ -71,14 +77,14 @@ fn whatever_stops_the_robot_ends_a_count_without_done() {
 #[test]
 fn a_low_supply_makes_a_count_take_longer_and_does_not_end_it() {
     let frames = |mv: Option<u16>| {
-        let mut dialogue = standing();
+        let mut dialogue = wake_odd_robot();
         if let Some(mv) = mv {
             supply(&mut dialogue, mv.into());
-            dialogue.run(40);
+            dialogue.run_frames(40);
         }
-        dialogue.say("sway 2");
+        dialogue.send_line("sway 2");
         (1..2_000_u32)
-            .find(|_| dialogue.run(1) == ["# done"])
+            .find(|_| dialogue.run_frames(1) == ["# done"])
             .expect("an end")
     };
     let (full, slow) = (frames(None), frames(Some(4_400)));
@@ -93,11 +99,11 @@ fn a_low_supply_makes_a_count_take_longer_and_does_not_end_it() {
 #[test]
 fn a_reset_ends_a_count() {
     for cause in [Cause::External, Cause::BrownOut, Cause::Watchdog] {
-        let mut dialogue = standing();
-        dialogue.say("sway 2");
-        dialogue.run(60);
+        let mut dialogue = wake_odd_robot();
+        dialogue.send_line("sway 2");
+        dialogue.run_frames(60);
         dialogue.reset(cause);
-        let printed = dialogue.run(LONG_FRAMES);
+        let printed = dialogue.run_frames(LONG_FRAMES);
         assert!(!printed.contains(&"# done".to_string()), "{printed:?}");
         assert!(["stand", "stop"].contains(&dialogue.status("gait").as_str()));
     }

@@ -5,29 +5,29 @@ use std::string::{String, ToString};
 
 use super::NEUTRAL;
 use crate::sample::Sample;
-use crate::virtual_board::{Running, reading};
+use crate::virtual_board::{RunningRobot, compute_reading};
 
 /// Frames until the robot stands and may begin to move.
 pub(super) const WAKING: u32 = 21;
 
 /// A running robot with its console.
-pub(super) type Dialogue = Running;
+pub(super) type Dialogue = RunningRobot;
 
 /// The odd robot, awake, with its banner read.
-pub(super) fn standing() -> Dialogue {
-    awake(Sample::odd())
+pub(super) fn wake_odd_robot() -> Dialogue {
+    wake_robot(Sample::odd())
 }
 
 /// A robot, awake, with its banner read.
-pub(super) fn awake(robot: Sample) -> Dialogue {
+pub(super) fn wake_robot(robot: Sample) -> Dialogue {
     let mut dialogue = Dialogue::power_on(*robot);
-    let printed = dialogue.lines();
+    let printed = dialogue.read_lines();
     assert_eq!(
         printed.len(),
         2,
         "the banner, and that nothing is saved: {printed:?}"
     );
-    dialogue.run(WAKING);
+    dialogue.run_frames(WAKING);
     dialogue
 }
 
@@ -50,7 +50,7 @@ pub(super) fn pairs(text: &str) -> HashMap<String, String> {
 /// Sets the board's supply, mV, and its rail to 6 V.
 pub(super) fn supply(dialogue: &mut Dialogue, mv: u32) {
     let supplies = dialogue.motion().robot().supplies();
-    let truth = reading(&supplies, mv, 6_000);
+    let truth = compute_reading(&supplies, mv, 6_000);
     dialogue.board.converter.set(truth);
 }
 

@@ -12,18 +12,18 @@ fn frames(robot: &mut Dialogue) -> Vec<[u16; 4]> {
 
 /// Observes the effect of a line on a robot's pulses and calibration.
 fn observe_effect(line: &str) -> Effect {
-    let mut walking = awake(Sample::paper());
+    let mut walking = wake_robot(Sample::paper());
     // With these settings `load` and `factory` change something.
     for setting in ["trim 2 3", "save", "trim 1 5", "sway"] {
-        assert!(walking.say(setting).starts_with("ok "), "{setting}");
-        walking.run(60);
+        assert!(walking.send_line(setting).starts_with("ok "), "{setting}");
+        walking.run_frames(60);
     }
     let mut unchanged = walking.clone();
     let mut still = walking.clone();
-    still.say("stop");
-    still.run(60);
-    still.say(line);
-    assert!(walking.say(line).starts_with("ok "), "{line}");
+    still.send_line("stop");
+    still.run_frames(60);
+    still.send_line(line);
+    assert!(walking.send_line(line).starts_with("ok "), "{line}");
     let [with, without, from_still] = [&mut walking, &mut unchanged, &mut still].map(frames);
     let is_constant = |frames: &[[u16; 4]]| frames[1..].iter().all(|frame| *frame == frames[1]);
     if with[FRAMES - 1] == [0; 4] {

@@ -4,38 +4,39 @@ use super::*;
 
 #[test]
 fn boot_is_carried_out_three_seconds_after_power_on_unless_a_byte_comes() {
-    let mut dialogue = standing();
+    let mut dialogue = wake_odd_robot();
     for boot in ["sway left", "rest"] {
-        dialogue.say(&format!("boot {boot}"));
-        dialogue.accept("save");
+        dialogue.send_line(&format!("boot {boot}"));
+        dialogue.expect_accepted("save");
         let eeprom = dialogue.board.memory.clone();
-        let mut unattended = Dialogue::with(*Sample::odd(), eeprom.clone(), Restart::default());
-        let printed = unattended.run(149);
+        let mut unattended =
+            Dialogue::with_memory(*Sample::odd(), eeprom.clone(), Restart::default());
+        let printed = unattended.run_frames(149);
         assert_eq!(printed.len(), 1, "{printed:?}");
         assert_eq!(
             unattended.motion().activity(),
             Activity::Gait(GaitId::STAND)
         );
-        assert_eq!(unattended.run(1), [format!("# boot: {boot}")]);
+        assert_eq!(unattended.run_frames(1), [format!("# boot: {boot}")]);
         assert_eq!(unattended.status("gait"), boot.replace(' ', "-"));
-        let mut watched = Dialogue::with(*Sample::odd(), eeprom, Restart::default());
-        watched.run(100);
+        let mut watched = Dialogue::with_memory(*Sample::odd(), eeprom, Restart::default());
+        watched.run_frames(100);
         watched.board.send(b" ");
-        watched.run(400);
+        watched.run_frames(400);
         assert_eq!(watched.status("gait"), "stand");
     }
 }
 
 #[test]
 fn a_gait_ends_when_the_link_is_lost_and_the_robot_reports_it() {
-    let mut dialogue = standing();
-    dialogue.say("deadman 400");
-    dialogue.say("sway");
+    let mut dialogue = wake_odd_robot();
+    dialogue.send_line("deadman 400");
+    dialogue.send_line("sway");
     for _ in 0..30 {
-        assert!(dialogue.run(15).is_empty());
-        dialogue.say("status");
+        assert!(dialogue.run_frames(15).is_empty());
+        dialogue.send_line("status");
     }
-    let printed = dialogue.run(21);
+    let printed = dialogue.run_frames(21);
     assert_eq!(
         printed,
         ["# fault: no line for as long as deadman says, stopped"]
@@ -44,7 +45,7 @@ fn a_gait_ends_when_the_link_is_lost_and_the_robot_reports_it() {
         (dialogue.status("gait"), dialogue.status("fault")),
         ("stop".into(), "link".into())
     );
-    dialogue.say("sway");
+    dialogue.send_line("sway");
     assert_eq!(dialogue.status("fault"), "none");
 }
 
@@ -57,15 +58,15 @@ fn lines_that_are_not_commands_do_not_keep_a_gait_going() {
         b"nonsense",
     ];
     for line in lines {
-        let mut dialogue = standing();
-        dialogue.say("deadman 400");
-        dialogue.say("sway");
+        let mut dialogue = wake_odd_robot();
+        dialogue.send_line("deadman 400");
+        dialogue.send_line("sway");
         for _ in 0..4 {
             dialogue.board.send(line);
             dialogue.board.send(b"\n");
-            dialogue.run(5);
+            dialogue.run_frames(5);
         }
-        dialogue.run(3);
+        dialogue.run_frames(3);
         assert_eq!(dialogue.status("fault"), "link", "{line:?}");
     }
 }
@@ -73,13 +74,13 @@ fn lines_that_are_not_commands_do_not_keep_a_gait_going() {
 #[test]
 fn the_beginning_of_a_line_that_waits_for_as_long_as_deadman_says_is_no_command() {
     for (deadman, wait, is_obeyed) in [(400, 19, true), (400, 20, false), (0, 2000, true)] {
-        let mut dialogue = standing();
-        dialogue.say(&format!("deadman {deadman}"));
+        let mut dialogue = wake_odd_robot();
+        dialogue.send_line(&format!("deadman {deadman}"));
         dialogue.board.send(b"sway 1");
-        dialogue.run(wait);
+        dialogue.run_frames(wait);
         // The link broke within `sway 12`, and noise ends the line.
         dialogue.board.send(b"\n");
-        let printed = dialogue.run(2);
+        let printed = dialogue.run_frames(2);
         let gait = if is_obeyed { "sway" } else { "stand" };
         assert_eq!(
             dialogue.status("gait"),
@@ -87,36 +88,36 @@ fn the_beginning_of_a_line_that_waits_for_as_long_as_deadman_says_is_no_command(
             "{deadman} {wait} {printed:?}"
         );
         // The next line is valid.
-        assert_eq!(dialogue.say("swing"), "ok swing", "{deadman} {wait}");
+        assert_eq!(dialogue.send_line("swing"), "ok swing", "{deadman} {wait}");
     }
 }
 
 #[test]
 fn each_byte_of_a_line_begins_the_time_of_deadman_again() {
-    let mut dialogue = standing();
-    dialogue.say("deadman 400");
+    let mut dialogue = wake_odd_robot();
+    dialogue.send_line("deadman 400");
     for byte in b"sway 1" {
         dialogue.board.send(&[*byte]);
-        dialogue.run(19);
+        dialogue.run_frames(19);
     }
     dialogue.board.send(b"\n");
-    dialogue.run(2);
+    dialogue.run_frames(2);
     assert_eq!(dialogue.status("gait"), "sway");
 }
 
 #[test]
 fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
-    let mut dialogue = standing();
-    dialogue.say("sway");
-    dialogue.run(150);
+    let mut dialogue = wake_odd_robot();
+    dialogue.send_line("sway");
+    dialogue.run_frames(150);
     let pace = |dialogue: &mut Dialogue| {
         let before = dialogue.motion().phase();
-        dialogue.run(10);
+        dialogue.run_frames(10);
         dialogue.motion().phase().wrapping_sub(before) & 0xff_ffff
     };
     let full = pace(&mut dialogue);
     supply(&mut dialogue, 4_400);
-    let printed = dialogue.run(40);
+    let printed = dialogue.run_frames(40);
     assert!(
         printed[0].starts_with("# supply: 4.")
             && printed[0].ends_with(&format!("V, low: no saving, speed up to {SLOW_PACE}")),
@@ -125,20 +126,20 @@ fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
     let slow = f64::from(pace(&mut dialogue)) / f64::from(full);
     let expected = f64::from(SLOW_PACE) / 100.0;
     assert!((slow - expected).abs() < 0.02, "{slow}");
-    dialogue.refuse("save", "8 the supply is too low");
+    dialogue.expect_refused("save", "8 the supply is too low");
     supply(&mut dialogue, 4_200);
-    let printed = dialogue.run(40);
+    let printed = dialogue.run_frames(40);
     assert_eq!(printed.len(), 2);
     assert_eq!(dialogue.status("gait"), "stop");
     assert_eq!(dialogue.status("fault"), "supply");
-    dialogue.refuse("sway", "8 ");
-    dialogue.refuse(NEUTRAL, "8 ");
+    dialogue.expect_refused("sway", "8 ");
+    dialogue.expect_refused(NEUTRAL, "8 ");
     supply(&mut dialogue, 4_000);
-    dialogue.run(40);
+    dialogue.run_frames(40);
     assert_eq!(dialogue.status("gait"), "rest");
     assert_eq!(dialogue.frame(), Pulses::default());
     supply(&mut dialogue, 5_000);
-    let printed = dialogue.run(100);
+    let printed = dialogue.run_frames(100);
     assert!(
         printed
             .last()
@@ -146,11 +147,11 @@ fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
         "{printed:?}"
     );
     assert_eq!(dialogue.status("gait"), "rest");
-    dialogue.accept("stand");
+    dialogue.expect_accepted("stand");
 }
 
 /// The state of servos that were held in a pose by the pulses of robot.toml.
-fn held(sweeps: [i16; 4]) -> Stance {
+fn held_stance(sweeps: [i16; 4]) -> Stance {
     let pose = Pose(sweeps.map(crate::numbers::units::Sweep));
     Stance {
         is_resting: false,
@@ -161,20 +162,24 @@ fn held(sweeps: [i16; 4]) -> Stance {
 }
 
 /// The restart number `count` after a hang, with this state of the servos before it.
-fn hung(count: u8, stance: Stance) -> Restart {
+fn restart_after_hang(count: u8, stance: Stance) -> Restart {
     Restart {
         cause: Cause::Watchdog,
         count,
-        before: Some(stance),
+        stance_before: Some(stance),
         ..Restart::NONE
     }
 }
 
 #[test]
 fn after_a_hang_the_robot_holds_its_pose_and_reports_the_hang() {
-    let stance = held([400, -300, 200, -100]);
-    let mut dialogue = Dialogue::with(*Sample::odd(), Eeprom::blank(), hung(3, stance));
-    let printed = dialogue.run(1);
+    let stance = held_stance([400, -300, 200, -100]);
+    let mut dialogue = Dialogue::with_memory(
+        *Sample::odd(),
+        Eeprom::blank(),
+        restart_after_hang(3, stance),
+    );
+    let printed = dialogue.run_frames(1);
     assert!(
         printed.contains(&"# fault: the program hung and began anew".to_string()),
         "{printed:?}"
@@ -185,8 +190,8 @@ fn after_a_hang_the_robot_holds_its_pose_and_reports_the_hang() {
     assert_eq!(dialogue.status("reset"), "watchdog");
     assert_eq!(dialogue.status("resets"), "3");
     assert_eq!(dialogue.status("fault"), "watchdog");
-    dialogue.say("stand");
-    dialogue.run(100);
+    dialogue.send_line("stand");
+    dialogue.run_frames(100);
     assert_eq!(dialogue.status("fault"), "none");
     assert_eq!(dialogue.status("pose"), neutral());
 }
@@ -197,15 +202,15 @@ fn an_unsafe_or_unreachable_pose_is_not_taken_over_and_the_robot_rests() {
         for cause in [Cause::Watchdog, Cause::External] {
             let restart = Restart {
                 cause,
-                ..hung(1, held(sweeps))
+                ..restart_after_hang(1, held_stance(sweeps))
             };
-            let mut dialogue = Dialogue::with(*Sample::odd(), Eeprom::blank(), restart);
+            let mut dialogue = Dialogue::with_memory(*Sample::odd(), Eeprom::blank(), restart);
             for _ in 0..140 {
                 assert_eq!(dialogue.frame(), Pulses::default());
             }
             assert_eq!(dialogue.status("gait"), "rest");
-            dialogue.say("stand");
-            dialogue.run(50);
+            dialogue.send_line("stand");
+            dialogue.run_frames(50);
             assert_eq!(dialogue.status("pose"), neutral());
         }
     }
@@ -213,17 +218,21 @@ fn an_unsafe_or_unreachable_pose_is_not_taken_over_and_the_robot_rests() {
 
 #[test]
 fn a_pose_beyond_a_travel_that_was_saved_narrower_is_not_taken_over() {
-    let mut dialogue = standing();
-    assert!(dialogue.say("limit 1 115 160").starts_with("ok "));
-    dialogue.accept("save");
+    let mut dialogue = wake_odd_robot();
+    assert!(dialogue.send_line("limit 1 115 160").starts_with("ok "));
+    dialogue.expect_accepted("save");
     let eeprom = dialogue.board.memory.clone();
     // 132.37 deg plus 30 is safe, but beyond 160.
-    let beyond = held([5461, 0, 0, 0]);
-    let mut within = Dialogue::with(*Sample::odd(), Eeprom::blank(), hung(1, beyond));
-    within.run(10);
+    let beyond = held_stance([5461, 0, 0, 0]);
+    let mut within = Dialogue::with_memory(
+        *Sample::odd(),
+        Eeprom::blank(),
+        restart_after_hang(1, beyond),
+    );
+    within.run_frames(10);
     assert_eq!(within.status("gait"), "stop");
-    let mut narrow = Dialogue::with(*Sample::odd(), eeprom, hung(1, beyond));
-    narrow.run(10);
+    let mut narrow = Dialogue::with_memory(*Sample::odd(), eeprom, restart_after_hang(1, beyond));
+    narrow.run_frames(10);
     assert_eq!(narrow.status("gait"), "rest");
 }
 
@@ -235,11 +244,11 @@ fn settings_that_were_not_saved_are_undone_at_the_slew_limit_after_a_reset() {
         ("scale 2 12", 1, Cause::External),
         ("dir 3 -", 2, Cause::BrownOut),
     ] {
-        let mut dialogue = standing();
-        dialogue.say("pose 140 50 311 224.5");
-        dialogue.run(100);
-        assert!(dialogue.say(setting).starts_with("ok "), "{setting}");
-        dialogue.run(100);
+        let mut dialogue = wake_odd_robot();
+        dialogue.send_line("pose 140 50 311 224.5");
+        dialogue.run_frames(100);
+        assert!(dialogue.send_line(setting).starts_with("ok "), "{setting}");
+        dialogue.run_frames(100);
         let mut last = dialogue.frame();
         dialogue.reset(cause);
         let calibration = *dialogue.motion().calibration();
@@ -270,11 +279,11 @@ fn settings_that_were_not_saved_are_undone_at_the_slew_limit_after_a_reset() {
 fn a_reset_while_servos_wake_wakes_no_two_together() {
     for cause in [Cause::Watchdog, Cause::External, Cause::BrownOut] {
         for frames in 1..25 {
-            let mut dialogue = standing();
-            dialogue.say("rest");
-            dialogue.run(10);
-            dialogue.say("stand");
-            dialogue.run(frames);
+            let mut dialogue = wake_odd_robot();
+            dialogue.send_line("rest");
+            dialogue.run_frames(10);
+            dialogue.send_line("stand");
+            dialogue.run_frames(frames);
             let mut had = dialogue.frame().0.map(|width| width.0 > 0);
             dialogue.reset(cause);
             let known = had;
@@ -298,11 +307,11 @@ fn a_reset_while_servos_wake_wakes_no_two_together() {
 #[test]
 fn a_robot_that_rests_stays_at_rest_through_every_reset_but_power() {
     for cause in [Cause::Watchdog, Cause::External, Cause::BrownOut] {
-        let mut dialogue = standing();
-        dialogue.say("pose 140 50 311 224.5");
-        dialogue.run(150);
-        dialogue.say("rest");
-        dialogue.run(5);
+        let mut dialogue = wake_odd_robot();
+        dialogue.send_line("pose 140 50 311 224.5");
+        dialogue.run_frames(150);
+        dialogue.send_line("rest");
+        dialogue.run_frames(5);
         let kept = *dialogue.board.memory.bytes();
         dialogue.reset(cause);
         dialogue.board.memory.log.clear();
@@ -312,7 +321,7 @@ fn a_robot_that_rests_stays_at_rest_through_every_reset_but_power() {
         assert_eq!(*dialogue.board.memory.bytes(), kept, "{cause:?}");
         assert!(dialogue.board.memory.log.is_empty(), "it is there already");
         // The `boot` setting is `stand`; a hang cancels it.
-        let printed = dialogue.run(1);
+        let printed = dialogue.run_frames(1);
         let boots = printed.iter().any(|line| line == "# boot: stand");
         assert_eq!(boots, cause != Cause::Watchdog, "{printed:?}");
         assert_eq!(dialogue.status("pose"), "140.00,50.00,311.00,224.50");
@@ -322,18 +331,18 @@ fn a_robot_that_rests_stays_at_rest_through_every_reset_but_power() {
 #[test]
 fn the_pose_of_a_rest_that_a_reset_cut_off_reaches_the_memory_after_it() {
     for cause in [Cause::Watchdog, Cause::External, Cause::BrownOut] {
-        let mut dialogue = standing();
-        dialogue.say("pose 140 50 311 224.5");
-        dialogue.run(150);
+        let mut dialogue = wake_odd_robot();
+        dialogue.send_line("pose 140 50 311 224.5");
+        dialogue.run_frames(150);
         dialogue.board.memory.slowness = 4;
         dialogue.board.memory.is_timed = true;
         dialogue.board.send(b"rest\r");
         dialogue.frame();
         dialogue.reset(cause);
         assert_eq!(dialogue.board.memory.bytes()[128], 0xff, "{cause:?}");
-        dialogue.run(100);
+        dialogue.run_frames(100);
         let eeprom = dialogue.board.memory.clone();
-        let mut again = Dialogue::with(*Sample::odd(), eeprom, Restart::NONE);
+        let mut again = Dialogue::with_memory(*Sample::odd(), eeprom, Restart::NONE);
         assert_eq!(again.status("pose"), "140.00,50.00,311.00,224.50");
     }
 }
@@ -346,26 +355,26 @@ fn repeated_brown_outs_or_presses_end_in_a_rest_until_a_motion_is_ordered() {
         (true, Cause::BrownOut),
         (true, Cause::External),
     ] {
-        let mut dialogue = standing();
+        let mut dialogue = wake_odd_robot();
         dialogue.board.has_boot_loader = boot_loader;
-        dialogue.lines();
+        dialogue.read_lines();
         for resets in 1..=5 {
             dialogue.reset(cause);
-            let printed = dialogue.run(17);
+            let printed = dialogue.run_frames(17);
             let rests = dialogue.frame() == Pulses::default();
             assert_eq!(rests, resets >= 3, "{resets}");
             let reason =
                 "# fault: reset several times in a row by the button or a weak supply, resting";
             assert_eq!(printed.iter().any(|line| line == reason), resets >= 3);
         }
-        dialogue.run(300);
+        dialogue.run_frames(300);
         assert_eq!(dialogue.frame(), Pulses::default(), "boot is cancelled");
         assert_eq!(dialogue.status("fault"), "brownout");
-        dialogue.refuse("sway", "7 ");
-        dialogue.accept("stand");
-        dialogue.run(30);
+        dialogue.expect_refused("sway", "7 ");
+        dialogue.expect_accepted("stand");
+        dialogue.run_frames(30);
         dialogue.reset(Cause::BrownOut);
-        dialogue.run(30);
+        dialogue.run_frames(30);
         assert_ne!(
             dialogue.frame(),
             Pulses::default(),
@@ -376,11 +385,11 @@ fn repeated_brown_outs_or_presses_end_in_a_rest_until_a_motion_is_ordered() {
 
 #[test]
 fn opening_the_port_and_sending_a_line_does_not_count_as_a_weak_supply() {
-    let mut dialogue = standing();
+    let mut dialogue = wake_odd_robot();
     dialogue.board.has_boot_loader = true;
     for _ in 0..20 {
         dialogue.reset(Cause::External);
-        dialogue.run(30);
+        dialogue.run_frames(30);
         assert_eq!(dialogue.status("fault"), "none");
         assert_ne!(dialogue.frame(), Pulses::default());
     }
@@ -388,24 +397,24 @@ fn opening_the_port_and_sending_a_line_does_not_count_as_a_weak_supply() {
 
 #[test]
 fn lines_by_radio_do_not_excuse_a_supply_that_fails_while_servos_wake() {
-    let mut dialogue = standing();
+    let mut dialogue = wake_odd_robot();
     dialogue.board.has_boot_loader = true;
     for resets in 1..=3 {
         dialogue.reset(Cause::External);
-        dialogue.run(5);
+        dialogue.run_frames(5);
         let fault = if resets < 3 { "none" } else { "brownout" };
         assert_eq!(dialogue.status("fault"), fault, "{resets}");
         // The third servo wakes.
-        dialogue.run(10);
+        dialogue.run_frames(10);
     }
 }
 
 #[test]
 fn brown_outs_half_a_minute_apart_do_not_count_as_in_a_row() {
-    let mut dialogue = standing();
+    let mut dialogue = wake_odd_robot();
     for _ in 0..6 {
         dialogue.reset(Cause::BrownOut);
-        dialogue.run(1501);
+        dialogue.run_frames(1501);
         assert_ne!(dialogue.frame(), Pulses::default());
     }
 }

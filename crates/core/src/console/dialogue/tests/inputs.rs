@@ -22,18 +22,18 @@ const PATROL: [(u8, &str, u16); 6] = [
 ];
 
 /// Frames after which a closed contact counts as closed.
-const DEBOUNCED: u32 = 3;
+const DEBOUNCE_FRAMES: u32 = 3;
 
 /// More frames than any step with an end takes in these tests.
 const LONG_FRAMES: u32 = 600;
 
-fn begun(rounds: u16, steps: &[(u8, &str, u16)]) -> Dialogue {
-    let mut dialogue = awake(Sample::odd().with_routine("patrol", rounds, steps));
-    dialogue.accept("patrol");
+fn start_patrol(rounds: u16, steps: &[(u8, &str, u16)]) -> Dialogue {
+    let mut dialogue = wake_robot(Sample::odd().with_routine("patrol", rounds, steps));
+    dialogue.expect_accepted("patrol");
     dialogue
 }
 
-fn set(dialogue: &mut Dialogue, input: Input, is_closed: bool) {
+fn set_contact(dialogue: &mut Dialogue, input: Input, is_closed: bool) {
     let bit = 1 << input.pin();
     dialogue.board.closed &= !bit;
     dialogue.board.closed |= bit * u32::from(is_closed);
@@ -41,9 +41,9 @@ fn set(dialogue: &mut Dialogue, input: Input, is_closed: bool) {
 
 /// Closes a contact for this many frames, then opens it; returns the lines printed meanwhile.
 fn press(dialogue: &mut Dialogue, input: Input, frames: u32) -> Vec<String> {
-    set(dialogue, input, true);
-    let lines = dialogue.run(frames);
-    set(dialogue, input, false);
+    set_contact(dialogue, input, true);
+    let lines = dialogue.run_frames(frames);
+    set_contact(dialogue, input, false);
     lines
 }
 
@@ -63,74 +63,80 @@ fn run_until_change(dialogue: &mut Dialogue) -> (u32, String) {
         if gait(dialogue) != before {
             return (frames, gait(dialogue));
         }
-        dialogue.run(1);
+        dialogue.run_frames(1);
     }
     (LONG_FRAMES, before)
 }
 
 #[test]
 fn a_robot_waits_for_its_button_walks_to_the_wall_and_turns_every_round() {
-    let mut dialogue = begun(2, &PATROL);
+    let mut dialogue = start_patrol(2, &PATROL);
     for _ in 0..2 {
-        assert_eq!(dialogue.run(LONG_FRAMES), ["# waiting for button"]);
+        assert_eq!(dialogue.run_frames(LONG_FRAMES), ["# waiting for button"]);
         assert_eq!(
             (gait(&dialogue), dialogue.status("gait")),
             ("Stop".into(), "patrol".into())
         );
         assert_eq!(
-            press(&mut dialogue, BUTTON, DEBOUNCED),
+            press(&mut dialogue, BUTTON, DEBOUNCE_FRAMES),
             ["# waiting for nose"]
         );
         assert_eq!(gait(&dialogue), "sway");
-        assert!(dialogue.run(3 * LONG_FRAMES).is_empty(), "no wall, no end");
+        assert!(
+            dialogue.run_frames(3 * LONG_FRAMES).is_empty(),
+            "no wall, no end"
+        );
         assert_eq!(gait(&dialogue), "sway");
-        assert!(press(&mut dialogue, NOSE, DEBOUNCED).is_empty());
+        assert!(press(&mut dialogue, NOSE, DEBOUNCE_FRAMES).is_empty());
         assert_eq!(gait(&dialogue), "back");
         assert_eq!(run_until_change(&mut dialogue).1, "sway left");
     }
-    assert_eq!(dialogue.run(LONG_FRAMES), ["# done"]);
+    assert_eq!(dialogue.run_frames(LONG_FRAMES), ["# done"]);
     assert_eq!(dialogue.status("gait"), "stop");
 }
 
 #[test]
 fn a_bouncing_contact_counts_once_it_has_held_for_three_frames() {
-    let mut dialogue = begun(1, &PATROL);
-    dialogue.run(LONG_FRAMES);
+    let mut dialogue = start_patrol(1, &PATROL);
+    dialogue.run_frames(LONG_FRAMES);
     for _ in 0..20 {
-        press(&mut dialogue, BUTTON, DEBOUNCED - 1);
-        dialogue.run(1);
+        press(&mut dialogue, BUTTON, DEBOUNCE_FRAMES - 1);
+        dialogue.run_frames(1);
     }
     assert_eq!(gait(&dialogue), "Stop");
-    set(&mut dialogue, BUTTON, true);
+    set_contact(&mut dialogue, BUTTON, true);
     let frames = run_until_change(&mut dialogue);
-    assert_eq!(frames, (DEBOUNCED, "sway".to_string()));
+    assert_eq!(frames, (DEBOUNCE_FRAMES, "sway".to_string()));
 }
 
 #[test]
 fn a_stuck_button_never_starts_the_robot_and_has_to_be_released_first() {
-    let mut dialogue = awake(Sample::odd().with_routine("patrol", 1, &PATROL));
-    set(&mut dialogue, BUTTON, true);
-    dialogue.accept("patrol");
-    assert_eq!(dialogue.run(5 * LONG_FRAMES), ["# waiting for button"]);
+    let mut dialogue = wake_robot(Sample::odd().with_routine("patrol", 1, &PATROL));
+    set_contact(&mut dialogue, BUTTON, true);
+    dialogue.expect_accepted("patrol");
+    assert_eq!(
+        dialogue.run_frames(5 * LONG_FRAMES),
+        ["# waiting for button"]
+    );
     assert_eq!(gait(&dialogue), "Stop");
-    set(&mut dialogue, BUTTON, false);
-    dialogue.run(DEBOUNCED - 1);
+    set_contact(&mut dialogue, BUTTON, false);
+    dialogue.run_frames(DEBOUNCE_FRAMES - 1);
     press(&mut dialogue, BUTTON, LONG_FRAMES);
     assert_eq!(gait(&dialogue), "Stop", "too short to have been open");
-    dialogue.run(DEBOUNCED);
-    press(&mut dialogue, BUTTON, DEBOUNCED);
+    dialogue.run_frames(DEBOUNCE_FRAMES);
+    press(&mut dialogue, BUTTON, DEBOUNCE_FRAMES);
     assert_eq!(gait(&dialogue), "sway");
 }
 
 #[test]
 fn a_wall_that_is_there_already_ends_the_way_at_once() {
-    let mut dialogue = begun(1, &PATROL);
-    dialogue.run(LONG_FRAMES);
-    set(&mut dialogue, NOSE, true);
-    press(&mut dialogue, BUTTON, DEBOUNCED);
+    let mut dialogue = start_patrol(1, &PATROL);
+    dialogue.run_frames(LONG_FRAMES);
+    set_contact(&mut dialogue, NOSE, true);
+    press(&mut dialogue, BUTTON, DEBOUNCE_FRAMES);
     assert_eq!(
         run_until_change(&mut dialogue),
-        (DEBOUNCED, "back".to_string())
+        (DEBOUNCE_FRAMES, "back".to_string())
     );
 }
 
@@ -145,18 +151,18 @@ fn a_contact_ends_a_step_of_every_kind_and_without_it_count_or_time_do() {
     ] {
         let steps = [(FRAMES, "back", 40), (UNTIL, "nose", 0), step, stand];
         let at_step = || {
-            let mut dialogue = begun(1, &steps);
+            let mut dialogue = start_patrol(1, &steps);
             while gait(&dialogue) != doing {
-                dialogue.run(1);
+                dialogue.run_frames(1);
             }
             dialogue
         };
         let mut ended = at_step();
-        ended.run(10);
-        set(&mut ended, NOSE, true);
+        ended.run_frames(10);
+        set_contact(&mut ended, NOSE, true);
         assert_eq!(
             run_until_change(&mut ended),
-            (DEBOUNCED, "stand".to_string()),
+            (DEBOUNCE_FRAMES, "stand".to_string()),
             "{step:?}"
         );
         let (frames, next) = run_until_change(&mut at_step());
@@ -179,16 +185,16 @@ fn a_press_during_a_step_that_does_not_wait_for_it_is_not_remembered() {
             (WAIT, "stand", ENDLESS),
             (CYCLES, "back", 1),
         ];
-        let mut dialogue = begun(1, &steps);
-        dialogue.run(20);
+        let mut dialogue = start_patrol(1, &steps);
+        dialogue.run_frames(20);
         assert!(press(&mut dialogue, BUTTON, 50).is_empty());
         assert_eq!(
-            dialogue.run(LONG_FRAMES),
+            dialogue.run_frames(LONG_FRAMES),
             ["# waiting for button"],
             "{step:?}"
         );
         assert!(["Stop", "Rest"].contains(&gait(&dialogue).as_str()));
-        press(&mut dialogue, BUTTON, DEBOUNCED);
+        press(&mut dialogue, BUTTON, DEBOUNCE_FRAMES);
         assert_eq!(gait(&dialogue), "back");
     }
 }
@@ -201,14 +207,14 @@ fn a_wait_after_a_rest_sends_no_pulse_and_the_press_wakes_the_servos() {
         (WAIT, "stand", ENDLESS),
         (CYCLES, "back", 1),
     ];
-    let mut dialogue = begun(1, &steps);
-    dialogue.run(20);
+    let mut dialogue = start_patrol(1, &steps);
+    dialogue.run_frames(20);
     for _ in 0..LONG_FRAMES {
         assert_eq!(dialogue.frame(), Pulses::default());
     }
-    press(&mut dialogue, BUTTON, DEBOUNCED);
+    press(&mut dialogue, BUTTON, DEBOUNCE_FRAMES);
     assert_eq!(gait(&dialogue), "back");
-    assert_eq!(dialogue.run(LONG_FRAMES), ["# done"]);
+    assert_eq!(dialogue.run_frames(LONG_FRAMES), ["# done"]);
 }
 
 #[test]
@@ -218,7 +224,7 @@ fn a_wait_brakes_the_gait_before_it_within_the_slew_limit() {
         (UNTIL, "button", 0),
         (WAIT, "stand", ENDLESS),
     ];
-    let mut dialogue = begun(1, &steps);
+    let mut dialogue = start_patrol(1, &steps);
     let mut last = widths(&mut dialogue);
     let mut changes = Vec::new();
     for _ in 0..200 {
@@ -239,8 +245,8 @@ fn a_wait_brakes_the_gait_before_it_within_the_slew_limit() {
 
 /// Two robots on patrol: one waits for the button, the other walks until the nose switch closes.
 fn waiting() -> [Dialogue; 2] {
-    let mut for_button = begun(0, &PATROL);
-    for_button.run(100);
+    let mut for_button = start_patrol(0, &PATROL);
+    for_button.run_frames(100);
     let mut for_nose = for_button.clone();
     press(&mut for_nose, BUTTON, 100);
     [for_button, for_nose]
@@ -249,46 +255,46 @@ fn waiting() -> [Dialogue; 2] {
 #[test]
 fn whatever_ends_a_routine_ends_its_wait_and_then_no_contact_moves_the_robot() {
     let stays = |mut dialogue: Dialogue, event: &str| {
-        dialogue.run(60);
+        dialogue.run_frames(60);
         let now = gait(&dialogue);
         for input in [BUTTON, NOSE] {
             press(&mut dialogue, input, 50);
-            assert_eq!(dialogue.run(50), Vec::<String>::new(), "{event}");
+            assert_eq!(dialogue.run_frames(50), Vec::<String>::new(), "{event}");
             assert_eq!(gait(&dialogue), now, "{event}");
         }
     };
     for begun in waiting() {
         for line in ["stop", "rest", "stand", NEUTRAL] {
             let mut dialogue = begun.clone();
-            dialogue.accept(line);
-            dialogue.run(300);
+            dialogue.expect_accepted(line);
+            dialogue.run_frames(300);
             stays(dialogue, line);
         }
         for mv in [4_200, 3_900] {
             let mut weak = begun.clone();
             supply(&mut weak, mv);
-            weak.run(60);
+            weak.run_frames(60);
             assert_eq!(weak.status("fault"), "supply");
             supply(&mut weak, 5_000);
             stays(weak, "a weak supply");
         }
         let mut late = begun.clone();
-        late.board.late = 1;
+        late.board.late_edges = 1;
         stays(late, "a late edge");
         let mut silent = begun.clone();
-        silent.accept("deadman 200");
-        silent.run(20);
+        silent.expect_accepted("deadman 200");
+        silent.run_frames(20);
         assert_eq!(silent.status("fault"), "link");
         stays(silent, "silence");
         for cause in [Cause::External, Cause::BrownOut, Cause::Watchdog] {
             let mut reset = begun.clone();
             reset.reset(cause);
-            reset.run(300);
+            reset.run_frames(300);
             stays(reset, "a reset");
         }
         let mut hung = begun.clone();
         assert!(hung.stall(1_000));
-        hung.run(300);
+        hung.run_frames(300);
         stays(hung, "a hang");
     }
 }
@@ -297,42 +303,43 @@ fn whatever_ends_a_routine_ends_its_wait_and_then_no_contact_moves_the_robot() {
 fn a_low_supply_slows_the_way_and_the_contact_ends_it_as_always() {
     let [_, mut dialogue] = waiting();
     supply(&mut dialogue, 4_400);
-    dialogue.run(60);
+    dialogue.run_frames(60);
     assert_eq!(gait(&dialogue), "sway");
-    set(&mut dialogue, NOSE, true);
+    set_contact(&mut dialogue, NOSE, true);
     assert_eq!(
         run_until_change(&mut dialogue),
-        (DEBOUNCED, "back".to_string())
+        (DEBOUNCE_FRAMES, "back".to_string())
     );
 }
 
 #[test]
 fn boot_waits_for_the_button_as_long_as_it_takes_and_deadman_does_not_end_that() {
-    let mut dialogue = awake(Sample::odd().with_routine("patrol", 0, &PATROL));
+    let mut dialogue = wake_robot(Sample::odd().with_routine("patrol", 0, &PATROL));
     for line in ["boot patrol", "deadman 200", "save"] {
-        dialogue.accept(line);
+        dialogue.expect_accepted(line);
     }
     let robot = *Sample::odd().with_routine("patrol", 0, &PATROL);
-    let mut unattended = Dialogue::with(robot, dialogue.board.memory.clone(), Restart::default());
-    let lines = unattended.run(10 * LONG_FRAMES);
+    let mut unattended =
+        Dialogue::with_memory(robot, dialogue.board.memory.clone(), Restart::default());
+    let lines = unattended.run_frames(10 * LONG_FRAMES);
     assert_eq!(
         lines[lines.len() - 2..],
         ["# boot: patrol", "# waiting for button"]
     );
-    let lines = press(&mut unattended, BUTTON, DEBOUNCED);
+    let lines = press(&mut unattended, BUTTON, DEBOUNCE_FRAMES);
     assert_eq!(lines, ["# waiting for nose"]);
     assert_eq!(gait(&unattended), "sway");
-    assert!(unattended.run(10 * LONG_FRAMES).is_empty());
+    assert!(unattended.run_frames(10 * LONG_FRAMES).is_empty());
 }
 
 #[test]
 fn only_the_pin_that_is_waited_for_gets_a_pull_up() {
-    let mut dialogue = awake(Sample::odd().with_routine("patrol", 1, &PATROL));
+    let mut dialogue = wake_robot(Sample::odd().with_routine("patrol", 1, &PATROL));
     assert_eq!(dialogue.board.pulled_up, 0);
-    dialogue.accept("patrol");
-    dialogue.run(10);
+    dialogue.expect_accepted("patrol");
+    dialogue.run_frames(10);
     assert_eq!(dialogue.board.pulled_up, 1 << BUTTON.pin());
-    dialogue.run(DEBOUNCED);
+    dialogue.run_frames(DEBOUNCE_FRAMES);
     press(&mut dialogue, BUTTON, 10);
     assert_eq!(
         dialogue.board.pulled_up,
@@ -349,10 +356,10 @@ fn a_pin_of_a_servo_of_the_rail_or_of_none_is_never_touched() {
             let button = content.steps.iter_mut().find(|step| step.kind == UNTIL);
             button.expect("the button").gait = pin;
         });
-        let mut dialogue = awake(robot);
+        let mut dialogue = wake_robot(robot);
         dialogue.board.closed = u32::MAX;
-        dialogue.accept("patrol");
-        dialogue.run(10);
+        dialogue.expect_accepted("patrol");
+        dialogue.run_frames(10);
         let is_free = (2..=12).contains(&pin) || (15..=19).contains(&pin);
         let expected = is_free && !pins.contains(&pin);
         let pulled_up = if expected { 1 << pin } else { 0 };
@@ -367,13 +374,13 @@ fn a_routine_whose_last_gait_has_a_time_or_a_contact_brakes_before_it_is_done() 
         &[(FRAMES, "sway", 90)][..],
         &[(UNTIL, "nose", 0), (FRAMES, "sway", ENDLESS)],
     ] {
-        let mut dialogue = begun(1, steps);
-        dialogue.run(90);
-        set(&mut dialogue, NOSE, true);
-        assert_eq!(dialogue.run(20), ["# done"]);
+        let mut dialogue = start_patrol(1, steps);
+        dialogue.run_frames(90);
+        set_contact(&mut dialogue, NOSE, true);
+        assert_eq!(dialogue.run_frames(20), ["# done"]);
         assert_eq!(dialogue.status("gait"), "stop");
         let held = widths(&mut dialogue);
-        assert!(dialogue.run(LONG_FRAMES).is_empty());
+        assert!(dialogue.run_frames(LONG_FRAMES).is_empty());
         assert_eq!(widths(&mut dialogue), held);
     }
 }
@@ -385,15 +392,15 @@ fn a_routine_may_wait_once_and_repeat_the_steps_after_that() {
         let routine = content.gaits.last_mut().expect("the routine");
         routine.channels[3].offset = 2;
     });
-    let mut dialogue = awake(robot);
-    dialogue.accept("patrol");
-    assert_eq!(dialogue.run(LONG_FRAMES), ["# waiting for button"]);
-    press(&mut dialogue, BUTTON, DEBOUNCED);
+    let mut dialogue = wake_robot(robot);
+    dialogue.expect_accepted("patrol");
+    assert_eq!(dialogue.run_frames(LONG_FRAMES), ["# waiting for button"]);
+    press(&mut dialogue, BUTTON, DEBOUNCE_FRAMES);
     for _ in 0..3 {
         assert_eq!(gait(&dialogue), "sway");
-        set(&mut dialogue, NOSE, true);
+        set_contact(&mut dialogue, NOSE, true);
         assert_eq!(run_until_change(&mut dialogue).1, "back");
-        set(&mut dialogue, NOSE, false);
+        set_contact(&mut dialogue, NOSE, false);
         assert_eq!(run_until_change(&mut dialogue).1, "sway left");
         run_until_change(&mut dialogue);
     }

@@ -27,7 +27,7 @@ fn robot(rounds: u16) -> Sample {
 fn run_recording_gaits(dialogue: &mut Dialogue, frames: u32) -> (Vec<String>, Vec<String>) {
     let (mut gaits, mut printed): (Vec<String>, Vec<String>) = Default::default();
     for _ in 0..frames {
-        printed.extend(dialogue.run(1));
+        printed.extend(dialogue.run_frames(1));
         let gait = match dialogue.motion().activity() {
             Activity::Gait(id) => dialogue.motion().robot().name(id).map(char::from).collect(),
             activity => format!("{activity:?}"),
@@ -41,11 +41,11 @@ fn run_recording_gaits(dialogue: &mut Dialogue, frames: u32) -> (Vec<String>, Ve
 
 /// Snapshots of the dialogue at many moments of the routine.
 fn at_every_step(robot: fn() -> Sample) -> Vec<Dialogue> {
-    let mut dialogue = awake(robot());
-    dialogue.say("patrol");
+    let mut dialogue = wake_robot(robot());
+    dialogue.send_line("patrol");
     let mut all = Vec::new();
     for _ in 0..40 {
-        dialogue.run(17);
+        dialogue.run_frames(17);
         if dialogue.status("gait") == "patrol" {
             all.push(dialogue.clone());
         }
@@ -57,8 +57,8 @@ fn at_every_step(robot: fn() -> Sample) -> Vec<Dialogue> {
 #[test]
 fn a_routine_goes_through_its_steps_and_says_once_that_it_is_done() {
     for rounds in [1, 2, 3] {
-        let mut dialogue = awake(robot(rounds));
-        assert_eq!(dialogue.say("Patrol"), "ok patrol");
+        let mut dialogue = wake_robot(robot(rounds));
+        assert_eq!(dialogue.send_line("Patrol"), "ok patrol");
         assert_eq!(dialogue.status("gait"), "patrol");
         let (gaits, printed) = run_recording_gaits(&mut dialogue, LONG_FRAMES * u32::from(rounds));
         assert_eq!(printed, ["# done"]);
@@ -73,13 +73,13 @@ fn a_routine_goes_through_its_steps_and_says_once_that_it_is_done() {
 
 #[test]
 fn a_number_says_how_many_rounds_and_a_routine_without_an_end_has_none() {
-    let mut counted = awake(robot(0));
-    counted.say("patrol 2");
+    let mut counted = wake_robot(robot(0));
+    counted.send_line("patrol 2");
     let (gaits, printed) = run_recording_gaits(&mut counted, 3 * LONG_FRAMES);
     assert_eq!(printed, ["# done"]);
     assert_eq!(gaits.iter().filter(|gait| *gait == "back").count(), 2);
-    let mut endless = awake(robot(0));
-    endless.say("patrol");
+    let mut endless = wake_robot(robot(0));
+    endless.send_line("patrol");
     let (gaits, printed) = run_recording_gaits(&mut endless, 20 * LONG_FRAMES);
     assert!(printed.is_empty(), "{printed:?}");
     assert!(gaits.iter().filter(|gait| *gait == "back").count() > 20);
@@ -87,8 +87,8 @@ fn a_number_says_how_many_rounds_and_a_routine_without_an_end_has_none() {
 
 #[test]
 fn a_step_of_some_time_lasts_that_time() {
-    let mut dialogue = awake(robot(1));
-    dialogue.say("patrol");
+    let mut dialogue = wake_robot(robot(1));
+    dialogue.send_line("patrol");
     let (gaits, _) = run_recording_gaits(&mut dialogue, 29);
     assert_eq!(gaits, ["stand"]);
     let (gaits, _) = run_recording_gaits(&mut dialogue, 1);
@@ -97,22 +97,22 @@ fn a_step_of_some_time_lasts_that_time() {
 
 #[test]
 fn help_boot_and_cal_know_a_routine_as_they_know_a_gait() {
-    let mut dialogue = awake(robot(1));
+    let mut dialogue = wake_robot(robot(1));
     assert!(dialogue.send(b"help\r")[0].ends_with("|stray|patrol"));
-    assert_eq!(dialogue.say("boot patrol"), "ok boot patrol");
+    assert_eq!(dialogue.send_line("boot patrol"), "ok boot patrol");
     assert!(
         dialogue
             .send(b"cal\r")
             .contains(&"# boot patrol".to_string())
     );
-    dialogue.accept("save");
+    dialogue.expect_accepted("save");
     let eeprom = dialogue.board.memory.clone();
-    let mut unattended = Dialogue::with(*robot(1), eeprom, Restart::default());
-    let printed = unattended.run(150);
+    let mut unattended = Dialogue::with_memory(*robot(1), eeprom, Restart::default());
+    let printed = unattended.run_frames(150);
     assert_eq!(printed.last().map(String::as_str), Some("# boot: patrol"));
     assert_eq!(unattended.status("gait"), "patrol");
-    dialogue.say("rest");
-    dialogue.refuse("patrol", "7 servos are resting, send stand first");
+    dialogue.send_line("rest");
+    dialogue.expect_refused("patrol", "7 servos are resting, send stand first");
 }
 
 #[test]
@@ -120,7 +120,7 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
     for midway in at_every_step(|| robot(0)) {
         for line in ["stop", "rest", "stand", "sway", "back 1", NEUTRAL] {
             let mut dialogue = midway.clone();
-            dialogue.accept(line);
+            dialogue.expect_accepted(line);
             let (gaits, printed) = run_recording_gaits(&mut dialogue, 600);
             assert!(gaits.len() <= 2, "{line}: {gaits:?}");
             assert_eq!(
@@ -131,7 +131,7 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
             assert_ne!(dialogue.status("gait"), "patrol");
         }
         let mut again = midway.clone();
-        again.say("patrol");
+        again.send_line("patrol");
         assert_eq!(
             run_recording_gaits(&mut again, 30)
                 .0
@@ -141,7 +141,7 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
         );
         let mut weak = midway.clone();
         supply(&mut weak, 4_200);
-        weak.run(60);
+        weak.run_frames(60);
         assert_eq!(
             (weak.status("gait"), weak.status("fault")),
             ("stop".into(), "supply".into())
@@ -154,7 +154,7 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
         );
         let mut empty = midway.clone();
         supply(&mut empty, 3_900);
-        empty.run(60);
+        empty.run_frames(60);
         assert_eq!(empty.status("gait"), "rest");
         for cause in [Cause::External, Cause::BrownOut, Cause::Watchdog] {
             let mut reset = midway.clone();
@@ -169,10 +169,10 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
 
 #[test]
 fn a_low_supply_slows_a_routine_and_does_not_end_it() {
-    let mut dialogue = awake(robot(1));
+    let mut dialogue = wake_robot(robot(1));
     supply(&mut dialogue, 4_400);
-    dialogue.run(40);
-    dialogue.say("patrol");
+    dialogue.run_frames(40);
+    dialogue.send_line("patrol");
     assert_eq!(
         run_recording_gaits(&mut dialogue, 2 * LONG_FRAMES).1,
         ["# done"]
@@ -182,8 +182,8 @@ fn a_low_supply_slows_a_routine_and_does_not_end_it() {
 #[test]
 fn the_guard_ends_a_routine_as_it_ends_a_gait() {
     let stray = [(CYCLES, "stray", 3), (CYCLES, "sway", 1)];
-    let mut dialogue = awake(Sample::odd().with_routine("patrol", 0, &stray));
-    dialogue.say("patrol");
+    let mut dialogue = wake_robot(Sample::odd().with_routine("patrol", 0, &stray));
+    dialogue.send_line("patrol");
     let (gaits, printed) = run_recording_gaits(&mut dialogue, LONG_FRAMES);
     assert_eq!(gaits, ["stray", "Stop"]);
     assert_eq!(printed.len(), 1);
@@ -195,36 +195,36 @@ fn the_guard_ends_a_routine_as_it_ends_a_gait() {
 fn silence_ends_a_routine_that_a_command_began_but_not_one_that_boot_began() {
     for midway in at_every_step(|| robot(0)) {
         let mut dialogue = midway;
-        dialogue.say("deadman 200");
-        let printed = dialogue.run(100);
+        dialogue.send_line("deadman 200");
+        let printed = dialogue.run_frames(100);
         assert_eq!(
             printed,
             ["# fault: no line for as long as deadman says, stopped"]
         );
         assert_eq!(dialogue.status("gait"), "stop");
     }
-    let mut dialogue = awake(robot(0));
-    dialogue.say("boot patrol");
-    dialogue.say("deadman 200");
-    dialogue.accept("save");
+    let mut dialogue = wake_robot(robot(0));
+    dialogue.send_line("boot patrol");
+    dialogue.send_line("deadman 200");
+    dialogue.expect_accepted("save");
     let eeprom = dialogue.board.memory.clone();
     let unattended = || {
-        let mut unattended = Dialogue::with(*robot(0), eeprom.clone(), Restart::default());
-        unattended.run(150);
+        let mut unattended = Dialogue::with_memory(*robot(0), eeprom.clone(), Restart::default());
+        unattended.run_frames(150);
         unattended
     };
     let mut idle = unattended();
-    assert!(idle.run(5 * LONG_FRAMES).is_empty(), "it goes on");
+    assert!(idle.run_frames(5 * LONG_FRAMES).is_empty(), "it goes on");
     // The first valid line arms the dead-man timer.
-    idle.say("speed 90");
-    assert_eq!(idle.run(100).len(), 1);
+    idle.send_line("speed 90");
+    assert_eq!(idle.run_frames(100).len(), 1);
     assert_eq!(idle.status("fault"), "link");
     // Neither single bytes nor an invalid line arm the dead-man timer.
     let mut noisy = unattended();
     noisy.board.send(b"x");
-    assert!(noisy.run(LONG_FRAMES).is_empty());
+    assert!(noisy.run_frames(LONG_FRAMES).is_empty());
     noisy.board.send(b"x\r");
-    assert_eq!(noisy.run(100).len(), 1, "the refusal");
+    assert_eq!(noisy.run_frames(100).len(), 1, "the refusal");
 }
 
 #[test]
@@ -234,12 +234,12 @@ fn a_rest_in_a_routine_ends_the_pulses_and_the_servos_wake_one_by_one() {
         (REST, "stand", 50),
         (FRAMES, "stand", 100),
     ];
-    let mut dialogue = awake(Sample::odd().with_routine("patrol", 2, &steps));
-    dialogue.say("patrol");
+    let mut dialogue = wake_robot(Sample::odd().with_routine("patrol", 2, &steps));
+    dialogue.send_line("patrol");
     let (mut frames_without_pulses, mut pulsing_counts) = (0, Vec::new());
     let mut printed = Vec::new();
     for _ in 0..LONG_FRAMES {
-        printed.extend(dialogue.run(1));
+        printed.extend(dialogue.run_frames(1));
         let pulses = dialogue.board.submitted().0;
         let count = pulses.iter().filter(|width| width.0 > 0).count();
         frames_without_pulses += usize::from(count == 0);
@@ -260,26 +260,26 @@ fn a_rest_in_a_routine_ends_the_pulses_and_the_servos_wake_one_by_one() {
 fn a_routine_can_be_stopped_while_it_rests_and_its_last_rest_is_saved() {
     let steps = [(CYCLES, "sway", 1), (REST, "stand", 50)];
     let resting = || {
-        let mut dialogue = awake(Sample::odd().with_routine("patrol", 2, &steps));
-        dialogue.say("patrol");
+        let mut dialogue = wake_robot(Sample::odd().with_routine("patrol", 2, &steps));
+        dialogue.send_line("patrol");
         while !dialogue.motion().is_resting() {
-            dialogue.run(1);
+            dialogue.run_frames(1);
         }
-        dialogue.run(5);
+        dialogue.run_frames(5);
         assert_eq!(dialogue.status("gait"), "rest");
         dialogue
     };
     for line in ["stop", "rest"] {
         let mut dialogue = resting();
-        dialogue.accept(line);
-        assert!(dialogue.run(LONG_FRAMES).is_empty());
+        dialogue.expect_accepted(line);
+        assert!(dialogue.run_frames(LONG_FRAMES).is_empty());
         assert!(dialogue.motion().is_resting());
     }
     let mut dialogue = resting();
-    assert_eq!(dialogue.run(LONG_FRAMES), ["# done"]);
+    assert_eq!(dialogue.run_frames(LONG_FRAMES), ["# done"]);
     assert!(dialogue.motion().is_resting());
     let pose = *dialogue.motion().pose();
     dialogue.lose_power(None);
-    dialogue.run(1);
+    dialogue.run_frames(1);
     assert_eq!(*dialogue.motion().pose(), pose, "it wakes where it rested");
 }

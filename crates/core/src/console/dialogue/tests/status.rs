@@ -4,14 +4,14 @@ use super::*;
 
 #[test]
 fn status_tells_everything_as_key_and_value() {
-    let mut dialogue = standing();
-    dialogue.board.late = 7;
+    let mut dialogue = wake_odd_robot();
+    dialogue.board.late_edges = 7;
     dialogue.board.count_lost(65_535);
-    dialogue.run(1);
-    dialogue.say("speed 42");
-    dialogue.say("sway left");
-    dialogue.run(200);
-    let line = dialogue.say("status");
+    dialogue.run_frames(1);
+    dialogue.send_line("speed 42");
+    dialogue.send_line("sway left");
+    dialogue.run_frames(200);
+    let line = dialogue.send_line("status");
     let motion = dialogue.motion();
     let phase = (u64::from(motion.phase()) * 1000) >> 24;
     let angles: Vec<String> = motion
@@ -24,7 +24,7 @@ fn status_tells_everything_as_key_and_value() {
         })
         .collect();
     let margin = Clearance::of(motion.robot(), motion.pose())
-        .smallest()
+        .smallest_margin()
         .thousandths();
     let expected = format!(
         "ok gait=sway-left phase=0.{phase:03} pose={} margin=0.{margin:03} speed=42 frames={} \
@@ -38,17 +38,17 @@ fn status_tells_everything_as_key_and_value() {
 #[test]
 fn a_voltage_is_left_out_until_it_is_measured() {
     let mut dialogue = Dialogue::power_on(*Sample::odd());
-    dialogue.lines();
-    let line = dialogue.say("status");
+    dialogue.read_lines();
+    let line = dialogue.send_line("status");
     assert!(line.ends_with(" resets=0"), "{line}");
-    dialogue.run(4);
+    dialogue.run_frames(4);
     assert_eq!(dialogue.status("vcc"), "5.00");
     assert_eq!(dialogue.status("rail"), "6.00");
 }
 
 #[test]
 fn status_names_what_the_robot_does() {
-    let mut dialogue = standing();
+    let mut dialogue = wake_odd_robot();
     assert_eq!(dialogue.status("gait"), "stand");
     for (command, name) in [
         ("sway", "sway"),
@@ -58,7 +58,7 @@ fn status_names_what_the_robot_does() {
         ("rest", "rest"),
         ("stand", "stand"),
     ] {
-        dialogue.say(command);
+        dialogue.send_line(command);
         assert_eq!(dialogue.status("gait"), name);
     }
 }
@@ -68,11 +68,11 @@ fn the_longest_possible_status_fits_a_line() {
     let name = "longest name of a gait that any robot may have..";
     assert_eq!(name.len(), crate::numbers::gaits::MAX_NAME_BYTES);
     let robot = Sample::odd().with_gait(name);
-    let mut dialogue = awake(robot);
-    dialogue.board.late = u16::MAX;
+    let mut dialogue = wake_robot(robot);
+    dialogue.board.late_edges = u16::MAX;
     dialogue.board.count_lost(u16::MAX);
-    dialogue.accept(name);
-    let line = dialogue.say("status");
+    dialogue.expect_accepted(name);
+    let line = dialogue.send_line("status");
     // The longest value of each key.
     let values = pairs(line.strip_prefix("ok ").expect("a status"));
     let longest = [
@@ -93,13 +93,13 @@ fn the_longest_possible_status_fits_a_line() {
 #[test]
 fn watch_reports_the_pose_of_every_nth_frame_until_it_is_ended() {
     for interval in [1u32, 2, 7, 50] {
-        let mut dialogue = standing();
-        dialogue.say("sway");
-        dialogue.say(&format!("watch {interval}"));
+        let mut dialogue = wake_odd_robot();
+        dialogue.send_line("sway");
+        dialogue.send_line(&format!("watch {interval}"));
         let start = dialogue.motion().frames();
         let mut times = Vec::new();
         for _ in 0..200 {
-            for line in dialogue.run(1) {
+            for line in dialogue.run_frames(1) {
                 let report = pairs(line.strip_prefix("# ").expect("a report"));
                 let time: u32 = report["t"].parse().expect("a number");
                 assert_eq!(time, dialogue.motion().frames());
@@ -110,36 +110,36 @@ fn watch_reports_the_pose_of_every_nth_frame_until_it_is_ended() {
         }
         let expected: Vec<u32> = (1..=200).filter(|time| time % interval == 0).collect();
         assert_eq!(times, expected);
-        dialogue.say("watch 0");
-        assert!(dialogue.run(200).is_empty());
+        dialogue.send_line("watch 0");
+        assert!(dialogue.run_frames(200).is_empty());
     }
 }
 
 #[test]
 fn watch_goes_on_at_rest_and_a_new_one_counts_from_its_own_beginning() {
-    let mut dialogue = standing();
-    dialogue.say("watch 5");
-    dialogue.say("rest");
-    assert_eq!(dialogue.run(50).len(), 10);
-    dialogue.run(3);
-    dialogue.say("watch 10");
-    assert!(dialogue.run(9).is_empty());
-    assert_eq!(dialogue.run(1).len(), 1);
+    let mut dialogue = wake_odd_robot();
+    dialogue.send_line("watch 5");
+    dialogue.send_line("rest");
+    assert_eq!(dialogue.run_frames(50).len(), 10);
+    dialogue.run_frames(3);
+    dialogue.send_line("watch 10");
+    assert!(dialogue.run_frames(9).is_empty());
+    assert_eq!(dialogue.run_frames(1).len(), 1);
 }
 
 #[test]
 fn a_report_that_nobody_read_is_written_once_and_a_new_watch_ends_them() {
-    let mut dialogue = standing();
-    dialogue.say("watch 2");
+    let mut dialogue = wake_odd_robot();
+    dialogue.send_line("watch 2");
     dialogue.run_without_reader(20);
-    assert_eq!(dialogue.lines().len(), 1);
+    assert_eq!(dialogue.read_lines().len(), 1);
     dialogue.run_without_reader(2);
     assert!(dialogue.has_output());
     dialogue.board.send(b"watch 0\r");
-    let printed = dialogue.lines();
+    let printed = dialogue.read_lines();
     assert!(
         printed.len() == 2 && printed[1] == "ok watch 0",
         "{printed:?}"
     );
-    assert!(dialogue.run(10).is_empty());
+    assert!(dialogue.run_frames(10).is_empty());
 }

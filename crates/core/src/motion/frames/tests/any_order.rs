@@ -44,7 +44,7 @@ proptest! {
                 Ask::Pose(sweeps) => {
                     let pose = Pose(sweeps.map(Sweep));
                     let beyond = pose.first_beyond_travel(motion.calibration()).map(Hazard::Travel);
-                    let hazard = Clearance::of(&motion.robot, &pose).hazard(&motion.robot);
+                    let hazard = Clearance::of(&motion.robot, &pose).first_hazard(&motion.robot);
                     let hazard = beyond.or(hazard);
                     prop_assert_eq!(motion.go_to(&pose).err(), hazard);
                 }
@@ -56,7 +56,7 @@ proptest! {
                 let (before, cycling) = (*motion.pose(), motion.is_cycling());
                 let pulses = motion.tick();
                 let clearance = Clearance::of(&motion.robot, motion.pose());
-                prop_assert_eq!(clearance.hazard(&motion.robot), None);
+                prop_assert_eq!(clearance.first_hazard(&motion.robot), None);
                 for (actual, held) in pulses.0.into_iter().zip(motion.held().0) {
                     prop_assert!(actual == Width(0) || actual == held);
                 }

@@ -27,7 +27,7 @@ fn cycles(motion: &mut Motion) -> (f64, u32) {
 }
 
 /// The share of a cycle that a gait covers in a frame at full pace; negative for a gait that runs backwards.
-fn in_a_frame(motion: &Motion, name: &str) -> f64 {
+fn cycles_per_frame(motion: &Motion, name: &str) -> f64 {
     f64::from(motion.robot.gait(motion.robot.id(name)).increment) / f64::from(CYCLE)
 }
 
@@ -41,7 +41,7 @@ fn every_gait_goes_its_count_of_cycles_within_two_frames_at_any_pace() {
                 motion.set_slow(slow);
                 motion.start_for(name, count);
                 let (covered, _) = cycles(&mut motion);
-                let frame = in_a_frame(&motion, name);
+                let frame = cycles_per_frame(&motion, name);
                 let over = covered / frame.signum() - f64::from(count);
                 let frames = over / frame.abs();
                 assert!(
@@ -112,7 +112,7 @@ fn the_same_gait_goes_on_from_where_it_is_and_counts_from_there() {
         let mut motion = Motion::in_gait("sway", from);
         motion.start_for("sway", count);
         let (covered, _) = cycles(&mut motion);
-        let over = (covered - f64::from(count)) / in_a_frame(&motion, "sway");
+        let over = (covered - f64::from(count)) / cycles_per_frame(&motion, "sway");
         assert!((-2.0..=1.2).contains(&over), "{over}");
     }
 }
@@ -169,6 +169,6 @@ fn a_new_calibration_interrupts_a_count_and_does_not_shorten_it() {
     assert!(covered > 0.1 && covered < 0.9, "{covered}");
     motion.settle();
     covered += cycles(&mut motion).0;
-    let over = (covered - 2.0) / in_a_frame(&motion, "sway");
+    let over = (covered - 2.0) / cycles_per_frame(&motion, "sway");
     assert!((-2.0..=1.2).contains(&over), "{over}");
 }

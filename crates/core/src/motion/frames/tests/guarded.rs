@@ -39,7 +39,7 @@ fn an_unsafe_frame_is_never_sent_and_the_last_safe_pose_is_held() {
         .step_by(1000)
         .filter_map(|phase| {
             let pose = gait.pose(motion.robot.waves(), phase);
-            Clearance::of(&motion.robot, &pose).hazard(&motion.robot)
+            Clearance::of(&motion.robot, &pose).first_hazard(&motion.robot)
         })
         .collect();
     let same = |reason: &Hazard| match (reason, hazard) {
@@ -78,7 +78,7 @@ fn a_pose_that_is_refused_changes_nothing_and_says_why() {
         for frames in [0, 3, 20, 70] {
             let mut asked = Motion::in_gait(name, frames);
             let pose = Pose([Sweep(12_000), Sweep(0), Sweep(0), Sweep(0)]);
-            let reason = Clearance::of(&asked.robot, &pose).hazard(&asked.robot);
+            let reason = Clearance::of(&asked.robot, &pose).first_hazard(&asked.robot);
             assert_eq!(asked.go_to(&pose).err(), reason);
             assert!(reason.is_some());
             assert_same(asked, Motion::in_gait(name, frames));

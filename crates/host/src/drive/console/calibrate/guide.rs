@@ -24,7 +24,7 @@ const SCALE_ANGLES: [f64; 6] = [30.0, -30.0, 20.0, -20.0, 10.0, -10.0];
 /// The longest time to wait for the end of a motion.
 const MOTION_TIMEOUT: Duration = Duration::from_secs(5);
 /// Interval between two `status` commands while waiting for the end of a motion.
-const LOOK: Duration = Duration::from_millis(25);
+const STATUS_INTERVAL: Duration = Duration::from_millis(25);
 
 /// A key with a meaning in the guide.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,14 +50,14 @@ pub enum Key {
 pub struct Guide<'a, P> {
     link: &'a mut Link<P>,
     /// The calibration at the beginning, or after the last save.
-    before: Calibration,
+    saved_calibration: Calibration,
     /// The calibration that is active now.
-    now: Calibration,
+    active_calibration: Calibration,
     /// The neutral angles, degrees.
     neutral: [f64; 4],
-    at: usize,
+    step_index: usize,
     /// The angle by which this step has moved its servo, degrees; `None` if it has not.
-    moved: Option<f64>,
+    moved_degrees: Option<f64>,
     /// True if scales and limits are skipped.
     skips_scales: bool,
     is_walking: bool,
@@ -72,14 +72,14 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     pub fn new(link: &'a mut Link<P>) -> Result<Self, LinkError> {
         let before = calibration::ask(link)?;
         link.command("stand")?;
-        let pose = settle(link)?;
+        let pose = wait_until_still(link)?;
         Ok(Self {
             link,
-            now: before.clone(),
-            before,
+            active_calibration: before.clone(),
+            saved_calibration: before,
             neutral: pose,
-            at: 0,
-            moved: None,
+            step_index: 0,
+            moved_degrees: None,
             skips_scales: false,
             is_walking: false,
             message: String::new(),
@@ -87,7 +87,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     }
 
     fn step(&self) -> Step {
-        STEPS[self.at]
+        STEPS[self.step_index]
     }
 
     /// True if the active calibration is saved.
@@ -108,27 +108,35 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             (Key::Back, Step::Walk) if self.skips_scales => {
                 self.go_to_step(Step::More).map(|()| false)
             }
-            (Key::Back, _) => self.enter_step(self.at.saturating_sub(1)).map(|()| false),
+            (Key::Back, _) => self
+                .enter_step(self.step_index.saturating_sub(1))
+                .map(|()| false),
             (Key::Next, Step::More) => {
                 self.skips_scales = true;
                 self.go_to_step(Step::Walk).map(|()| false)
             }
             (Key::Yes, Step::More) => {
                 self.skips_scales = false;
-                self.enter_step(self.at + 1).map(|()| false)
+                self.enter_step(self.step_index + 1).map(|()| false)
             }
             (Key::Next, Step::Sign(_)) => {
                 self.message = "Press the space bar, look, then answer with y or n.".to_owned();
                 Ok(false)
             }
             (Key::Next, Step::Save) => self.save().map(|()| false),
-            (Key::Next, _) => self.enter_step(self.at + 1).map(|()| false),
+            (Key::Next, _) => self.enter_step(self.step_index + 1).map(|()| false),
             (Key::Act, Step::Sign(servo)) => self.move_one(servo, &SIGN_ANGLES).map(|()| false),
             (Key::Act, Step::Scale(servo)) => self.move_one(servo, &SCALE_ANGLES).map(|()| false),
-            (Key::Turn(degrees), Step::Scale(servo)) => self.scale(servo, degrees).map(|()| false),
-            (Key::Turn(degrees), Step::Limit(servo)) => self.limit(servo, degrees).map(|()| false),
-            (Key::Yes | Key::No, Step::Sign(servo)) => self.prove(servo, key).map(|()| false),
-            (Key::Turn(degrees), Step::Trim(servo)) => self.trim(servo, degrees).map(|()| false),
+            (Key::Turn(degrees), Step::Scale(servo)) => {
+                self.change_scale(servo, degrees).map(|()| false)
+            }
+            (Key::Turn(degrees), Step::Limit(servo)) => {
+                self.change_limit(servo, degrees).map(|()| false)
+            }
+            (Key::Yes | Key::No, Step::Sign(servo)) => self.answer_sign(servo, key).map(|()| false),
+            (Key::Turn(degrees), Step::Trim(servo)) => {
+                self.change_trim(servo, degrees).map(|()| false)
+            }
             (Key::Act, Step::Walk) => self.set_walking(!self.is_walking).map(|()| false),
             _ => Ok(false),
         };
@@ -145,7 +153,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     ///
     /// # Errors
     /// Fails if the connection breaks.
-    pub fn idle(&mut self) -> Result<(), LinkError> {
+    pub fn read_messages(&mut self) -> Result<(), LinkError> {
         while let Some(line) = self.link.line(Duration::ZERO)? {
             if line.starts_with(BANNER) {
                 self.message = "The board was reset: leave with q and begin again.".to_owned();
@@ -168,21 +176,21 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             Ok(()) | Err(LinkError::Refused { .. }) => {}
             Err(error) => return Err(error),
         }
-        if self.now != self.before {
-            calibration::apply(&self.before, self.link)?;
+        if self.active_calibration != self.saved_calibration {
+            calibration::apply(&self.saved_calibration, self.link)?;
         }
         Ok(())
     }
 
     fn save(&mut self) -> Result<(), LinkError> {
         self.link.command("save")?;
-        self.before = self.now.clone();
-        self.enter_step(self.at + 1)
+        self.saved_calibration = self.active_calibration.clone();
+        self.enter_step(self.step_index + 1)
     }
 
     fn go_to_step(&mut self, step: Step) -> Result<(), LinkError> {
         let index = STEPS.iter().position(|other| *other == step);
-        self.enter_step(index.unwrap_or(self.at))
+        self.enter_step(index.unwrap_or(self.step_index))
     }
 
     fn enter_step(&mut self, to: usize) -> Result<(), LinkError> {
@@ -190,20 +198,20 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             Step::Horns => {
                 self.stand()?;
                 self.link.command("center")?;
-                settle(self.link)?;
+                wait_until_still(self.link)?;
             }
             _ if self.step() == Step::Save => {}
             _ => self.stand()?,
         }
-        self.at = to;
+        self.step_index = to;
         Ok(())
     }
 
     fn stand(&mut self) -> Result<(), LinkError> {
         self.link.command("stand")?;
         self.is_walking = false;
-        self.moved = None;
-        settle(self.link)?;
+        self.moved_degrees = None;
+        wait_until_still(self.link)?;
         Ok(())
     }
 
@@ -231,20 +239,20 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         let [a1, a2, a3, a4] = pose;
         self.link
             .command(&format!("pose {a1:.2} {a2:.2} {a3:.2} {a4:.2}"))?;
-        self.moved = Some(degrees);
-        settle(self.link)?;
+        self.moved_degrees = Some(degrees);
+        wait_until_still(self.link)?;
         Ok(())
     }
 
     /// Changes the scale of the servo that was moved so that it turns this many degrees further
     /// counter-clockwise. Its neutral pulse stays the same, so its trim is converted, too.
-    fn scale(&mut self, servo: usize, degrees: f64) -> Result<(), LinkError> {
-        let Some(ordered) = self.moved else {
+    fn change_scale(&mut self, servo: usize, degrees: f64) -> Result<(), LinkError> {
+        let Some(ordered) = self.moved_degrees else {
             self.message = "Press the space bar first, and look where it points.".to_owned();
             return Ok(());
         };
-        let mut next = self.now.clone();
-        let old = self.now.servos[servo];
+        let mut next = self.active_calibration.clone();
+        let old = self.active_calibration.servos[servo];
         let new = old.with_scale(old.scale * (1.0 + degrees / ordered));
         next.servos[servo] = new;
         let (n, scale, trim) = (servo + 1, new.scale, new.trim);
@@ -255,55 +263,55 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             self.link.command(&format!("scale {n} {:.2}", old.scale))?;
             return Err(error);
         }
-        self.now = next;
+        self.active_calibration = next;
         Ok(())
     }
 
     /// Moves one limit of a servo's travel by one degree in the direction of `degrees`: the first limit for the
     /// keys of 0.5 degrees, the second limit for the keys of 0.1.
-    fn limit(&mut self, servo: usize, degrees: f64) -> Result<(), LinkError> {
-        let mut next = self.now.clone();
+    fn change_limit(&mut self, servo: usize, degrees: f64) -> Result<(), LinkError> {
+        let mut next = self.active_calibration.clone();
         let servo_settings = &mut next.servos[servo];
         let end = &mut servo_settings.limit[usize::from(degrees.abs() < 0.3)];
-        *end = hundredths((*end + degrees.signum()).rem_euclid(360.0));
+        *end = round_to_hundredths((*end + degrees.signum()).rem_euclid(360.0));
         let [min, max] = servo_settings.limit;
         self.link
             .command(&format!("limit {} {min:.2} {max:.2}", servo + 1))?;
-        self.now = next;
+        self.active_calibration = next;
         Ok(())
     }
 
-    fn prove(&mut self, servo: usize, answer: Key) -> Result<(), LinkError> {
-        if self.moved.is_none() {
+    fn answer_sign(&mut self, servo: usize, answer: Key) -> Result<(), LinkError> {
+        if self.moved_degrees.is_none() {
             self.message = "Press the space bar first, and look which way it turns.".to_owned();
             return Ok(());
         }
         if answer == Key::Yes {
-            return self.enter_step(self.at + 1);
+            return self.enter_step(self.step_index + 1);
         }
         self.stand()?;
         let n = servo + 1;
-        let mut next = self.now.clone();
+        let mut next = self.active_calibration.clone();
         next.servos[servo] = next.servos[servo].reversed();
         let ServoSettings { dir, trim, .. } = next.servos[servo];
         self.link.command(&format!("dir {n} {dir}"))?;
         if trim != 0.0 {
             self.link.command(&format!("trim {n} {trim:.2}"))?;
         }
-        self.now = next;
-        settle(self.link)?;
+        self.active_calibration = next;
+        wait_until_still(self.link)?;
         self.message =
             format!("The sign of A{n} is `{dir}` now. Press the space bar to look once more.");
         Ok(())
     }
 
-    fn trim(&mut self, servo: usize, degrees: f64) -> Result<(), LinkError> {
-        let mut next = self.now.clone();
+    fn change_trim(&mut self, servo: usize, degrees: f64) -> Result<(), LinkError> {
+        let mut next = self.active_calibration.clone();
         let servo_settings = &mut next.servos[servo];
-        servo_settings.trim = hundredths(servo_settings.trim + degrees);
+        servo_settings.trim = round_to_hundredths(servo_settings.trim + degrees);
         let line = format!("trim {} {:.2}", servo + 1, servo_settings.trim);
         self.link.command(&line)?;
-        self.now = next;
+        self.active_calibration = next;
         Ok(())
     }
 
@@ -333,12 +341,12 @@ impl<'a, P: Read + Write> Guide<'a, P> {
 }
 
 /// Rounds to hundredths, as the robot does, without a negative zero.
-fn hundredths(value: f64) -> f64 {
+fn round_to_hundredths(value: f64) -> f64 {
     (value * 100.0).round() / 100.0 + 0.0
 }
 
 /// Waits until the robot stands still, at most [`MOTION_TIMEOUT`], and returns its pose, degrees.
-fn settle<P: Read + Write>(link: &mut Link<P>) -> Result<[f64; 4], LinkError> {
+fn wait_until_still<P: Read + Write>(link: &mut Link<P>) -> Result<[f64; 4], LinkError> {
     let mut deadline = Deadline::after(MOTION_TIMEOUT);
     let mut last: Option<Status> = None;
     loop {
@@ -362,7 +370,7 @@ fn settle<P: Read + Write>(link: &mut Link<P>) -> Result<[f64; 4], LinkError> {
             _ if is_over => return Ok(pose),
             _ => last = Some(status),
         }
-        link.pause(LOOK)?;
+        link.pause(STATUS_INTERVAL)?;
     }
 }
 

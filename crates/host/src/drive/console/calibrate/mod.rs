@@ -13,7 +13,7 @@ use crossterm::{cursor, execute, queue, terminal as mode};
 
 use super::connect::Connect;
 use super::terminal;
-use super::turn_error::TurnError;
+use super::turn_error::DialogueError;
 use crate::Failure;
 use guide::{Guide, Key, View};
 
@@ -29,9 +29,9 @@ pub struct Args {
 }
 
 /// Interval between reads from the robot while no key is pressed.
-const TURN: Duration = Duration::from_millis(200);
+const READ_INTERVAL: Duration = Duration::from_millis(200);
 /// Interval between checks of the keys.
-const LOOK: Duration = Duration::from_millis(20);
+const KEY_INTERVAL: Duration = Duration::from_millis(20);
 
 /// Runs `lizard calibrate`.
 ///
@@ -44,8 +44,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
     let finder = args.connect.finder("calibrate")?;
     let (mut board, _) = finder.open_and_greet()?;
-    let ended = Guide::new(&mut board.link).map_err(TurnError::from);
-    let ended = ended.and_then(|mut guide| with_keys(&mut guide));
+    let ended = Guide::new(&mut board.link).map_err(DialogueError::from);
+    let ended = ended.and_then(|mut guide| run_guide(&mut guide));
     match ended {
         Ok(saved) => {
             // The terminal may be gone; then nobody can read this.
@@ -57,10 +57,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
             let _ = writeln!(io::stdout(), "{words}");
             Ok(())
         }
-        Err(TurnError::Io(error)) => Err(error.into()),
-        Err(TurnError::File(failure)) => Err(failure),
+        Err(DialogueError::Io(error)) => Err(error.into()),
+        Err(DialogueError::File(failure)) => Err(failure),
         // Opening the port again resets the board, so unsaved settings are lost then.
-        Err(TurnError::Link(error)) => Err(Failure::Impossible(format!(
+        Err(DialogueError::Link(error)) => Err(Failure::Impossible(format!(
             "{}: {error}; what was not saved is lost when the port is opened again",
             board.name
         ))),
@@ -69,9 +69,9 @@ pub fn run(args: Args) -> Result<(), Failure> {
 
 /// Shows the steps until the user is done; returns true if the calibration was saved. Closing
 /// the terminal cancels it.
-fn with_keys<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, TurnError> {
-    match steps(guide) {
-        Err(TurnError::Io(_)) if !terminal::is_open() => {
+fn run_guide<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, DialogueError> {
+    match run_steps(guide) {
+        Err(DialogueError::Io(_)) if !terminal::is_open() => {
             guide.press_key(Key::Leave)?;
             Ok(false)
         }
@@ -79,7 +79,7 @@ fn with_keys<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, 
     }
 }
 
-fn steps<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, TurnError> {
+fn run_steps<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, DialogueError> {
     let mut page = Page::new()?;
     let mut last_view = None;
     let mut last_read = Instant::now();
@@ -95,11 +95,11 @@ fn steps<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, Turn
         // Polls without waiting: if the terminal is closed during a wait, crossterm never returns
         // from it.
         if !event::poll(Duration::ZERO)? {
-            if last_read.elapsed() >= TURN {
-                guide.idle()?;
+            if last_read.elapsed() >= READ_INTERVAL {
+                guide.read_messages()?;
                 last_read = Instant::now();
             }
-            std::thread::sleep(LOOK);
+            std::thread::sleep(KEY_INTERVAL);
             continue;
         }
         match event::read()? {
@@ -110,7 +110,7 @@ fn steps<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, Turn
                 last_view = None;
             }
             Event::Key(key) => {
-                if let Some(key) = meaning(key)
+                if let Some(key) = interpret_key(key)
                     && guide.press_key(key)?
                 {
                     return Ok(guide.is_saved());
@@ -128,7 +128,7 @@ fn is_suspend(key: KeyEvent) -> bool {
 }
 
 /// The meaning of a key in the guide; `None` if it has none, or was released.
-fn meaning(key: KeyEvent) -> Option<Key> {
+fn interpret_key(key: KeyEvent) -> Option<Key> {
     if key.kind == KeyEventKind::Release {
         return None;
     }

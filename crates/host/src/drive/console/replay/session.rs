@@ -100,7 +100,7 @@ impl Session {
         let mut widths: Vec<[u16; 4]> = vec![[0; 4]; (self.end_ms() / FRAME_MS) as usize + 1];
         let mut resting = false;
         // The robot's frame count and the index in `widths` at the last pose for which the clock matched them.
-        let mut matched: Option<(u64, usize)> = None;
+        let mut last_match: Option<(u64, usize)> = None;
         let mut count = 0;
         // The index in `widths` of the last pose; `None` if the robot has rested or was reset since.
         let mut last: Option<usize> = None;
@@ -116,18 +116,18 @@ impl Session {
                 Event::Pose { frame, angles } => {
                     let slot_now = (entry.ms / FRAME_MS) as usize;
                     if *frame < count {
-                        (matched, last) = (None, None);
+                        (last_match, last) = (None, None);
                     }
                     count = *frame;
                     // The robot's count is steadier than the time at which a line arrives.
-                    let counted = matched.and_then(|(first, at)| {
+                    let counted_index = last_match.and_then(|(first, at)| {
                         at.checked_add(usize::try_from(frame.checked_sub(first)?).ok()?)
                     });
-                    let slot_index = counted
+                    let slot_index = counted_index
                         .filter(|slot_index| slot_index.abs_diff(slot_now) <= MAX_CLOCK_DIFFERENCE)
                         .unwrap_or(slot_now);
-                    if counted != Some(slot_index) {
-                        matched = Some((*frame, slot_index));
+                    if counted_index != Some(slot_index) {
+                        last_match = Some((*frame, slot_index));
                     }
                     let Some(slot) = widths.get_mut(slot_index) else {
                         continue;
@@ -185,7 +185,7 @@ impl Session {
             end_ms,
             ..Script::default()
         };
-        spans::spans(&script, &answers)
+        spans::command_spans(&script, &answers)
     }
 }
 

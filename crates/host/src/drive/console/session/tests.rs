@@ -22,7 +22,10 @@ fn a_users_line_is_sent_after_the_previous_answer() {
     );
     assert!(session.is_idle());
     assert_eq!(session.next_line(now), None, "the next status is not due");
-    assert_eq!(session.next_line(now + POLL).as_deref(), Some("status"));
+    assert_eq!(
+        session.next_line(now + STATUS_INTERVAL).as_deref(),
+        Some("status")
+    );
     assert!(session.status().is_some_and(Status::is_moving));
 }
 
@@ -71,13 +74,13 @@ fn a_missing_answer_is_reported_once_and_the_next_line_is_sent() {
     session.queue("walk");
     session.queue("stop");
     session.next_line(now);
-    assert_eq!(session.overdue(now), None);
+    assert_eq!(session.end_overdue_question(now), None);
     let later = now + TIMEOUT;
     assert_eq!(
-        session.overdue(later).as_deref(),
+        session.end_overdue_question(later).as_deref(),
         Some("(no answer to `walk`)")
     );
-    assert_eq!(session.overdue(later), None);
+    assert_eq!(session.end_overdue_question(later), None);
     assert_eq!(session.next_line(later).as_deref(), Some("stop"));
 }
 
@@ -92,7 +95,10 @@ fn stop_waits_for_no_answer_and_drops_waiting_lines() {
     assert_eq!(session.receive(STATUS), None, "the answer of before");
     assert_eq!(session.receive("ok stop").as_deref(), Some("ok stop"));
     assert!(session.is_idle());
-    assert_eq!(session.next_line(now + POLL).as_deref(), Some("status"));
+    assert_eq!(
+        session.next_line(now + STATUS_INTERVAL).as_deref(),
+        Some("status")
+    );
 }
 
 #[test]
@@ -106,13 +112,13 @@ fn stop_is_sent_until_it_is_answered_and_its_later_answers_belong_to_no_line() {
         assert_eq!(session.next_line(at), None);
         at += STOP_INTERVAL;
     }
-    let printed = session.overdue(at).expect("the user is told");
+    let printed = session.end_overdue_question(at).expect("the user is told");
     assert!(printed.contains("may go on"), "{printed}");
-    assert_eq!(session.overdue(at), None, "once");
+    assert_eq!(session.end_overdue_question(at), None, "once");
     assert_eq!(session.receive("ok stop").as_deref(), Some("ok stop"));
     session.queue("walk");
     assert_eq!(session.next_line(at), None, "others may still come");
-    at += LATE_ANSWERS;
+    at += LATE_ANSWER_TIME;
     assert_eq!(session.next_line(at).as_deref(), Some("walk"));
     assert_eq!(session.receive("ok stop"), None, "it is not that of walk");
     assert!(!session.is_idle());
@@ -157,7 +163,7 @@ fn a_late_answer_is_not_that_of_the_next_line() {
     session.queue("trim 1 2");
     session.queue("walk");
     session.next_line(now);
-    session.overdue(now + TIMEOUT);
+    session.end_overdue_question(now + TIMEOUT);
     session.next_line(now + TIMEOUT);
     session.receive("ok trim 1 2.00");
     assert!(!session.is_idle(), "walk has no answer");
@@ -197,9 +203,11 @@ fn lines_that_fail_are_counted_once_and_the_first_is_named() {
         session.next_line(now);
         match answer {
             Some(answer) => drop(session.receive(answer)),
-            None => drop(session.overdue(now + TIMEOUT)),
+            None => drop(session.end_overdue_question(now + TIMEOUT)),
         }
-        session.verdict().map_err(|failure| failure.to_string())
+        session
+            .check_all_accepted()
+            .map_err(|failure| failure.to_string())
     };
     assert_eq!(ask("walk", Some("ok walk")), Ok(()));
     let first =
@@ -210,7 +218,7 @@ fn lines_that_fail_are_counted_once_and_the_first_is_named() {
     session.receive("err 3 late");
     assert!(
         session
-            .verdict()
+            .check_all_accepted()
             .is_err_and(|it| it.to_string() == first("3 of 4"))
     );
 }
@@ -293,7 +301,7 @@ fn a_robot_that_has_stopped_gets_its_own_deadman_restored() {
     let stopped = |line: &str| own(line).replace("gait=walk", "gait=stop");
     let lines = sent(&mut session, now + Duration::from_secs(2), 2000, stopped);
     assert_eq!(words(&lines), ["stop", "deadman 2000"]);
-    assert_eq!(session.last_line(), None);
+    assert_eq!(session.restore_deadman(), None);
 }
 
 #[test]
@@ -303,7 +311,7 @@ fn a_robot_that_its_user_leaves_continues_with_its_own_deadman() {
     session.queue("arc left");
     let left = |line: &str| robot(line).replace("700", "901");
     sent(&mut session, now, 1000, left);
-    assert_eq!(session.last_line().as_deref(), Some("deadman 0"));
+    assert_eq!(session.restore_deadman().as_deref(), Some("deadman 0"));
 }
 
 #[test]
@@ -324,10 +332,10 @@ fn no_gait_begins_while_the_robot_has_not_confirmed_its_deadman() {
     session.receive("ok cal");
     assert_eq!(session.next_line(now).as_deref(), Some("deadman 901"));
     let later = now + TIMEOUT;
-    let printed = session.overdue(later).expect("it is said");
+    let printed = session.end_overdue_question(later).expect("it is said");
     assert!(printed.contains("not sent"), "{printed}");
     assert_eq!(session.next_line(later), None, "walk is not sent");
-    assert!(session.verdict().is_err(), "a script learns it");
+    assert!(session.check_all_accepted().is_err(), "a script learns it");
     session.queue("walk");
     assert_eq!(session.next_line(later).as_deref(), Some("deadman 901"));
 }
@@ -337,13 +345,13 @@ fn a_silent_robot_is_reported_once_until_it_answers_again() {
     let mut now = Instant::now();
     let mut session = Session::new(now, true, false);
     let mut ask = |answers: bool| {
-        now += POLL;
+        now += STATUS_INTERVAL;
         assert_eq!(session.next_line(now).as_deref(), Some("status"));
         if answers {
             session.receive(STATUS);
         }
         now += STATUS_TIMEOUT;
-        session.overdue(now)
+        session.end_overdue_question(now)
     };
     assert!(ask(false).is_some_and(|printed| printed.contains("does not answer")));
     assert_eq!(ask(false), None);

@@ -20,8 +20,8 @@ use lizard_core::numbers::mark::Mark;
 use lizard_core::numbers::section::{FORMAT, Header, MAGIC, Region, START};
 
 use super::chip::Chip;
-use super::found::{FlashContents, IDLE, Program};
-use super::image::{BLANK, BOOT, Image, PAGE, Page};
+use super::found::{FlashContents, IDLE_JUMP, Program};
+use super::image::{BLANK, BOOT_ADDRESS, Image, PAGE_BYTES, Page};
 use super::stk500::{Board, Kind, Loader, LoaderError};
 use super::target::{Target, TooLong};
 
@@ -29,7 +29,7 @@ use super::target::{Target, TooLong};
 /// answers.
 const ATTEMPTS: usize = 4;
 /// Index of the page where a robot's section begins.
-const ROBOT: usize = START as usize / PAGE;
+const ROBOT_PAGE: usize = START as usize / PAGE_BYTES;
 
 /// The operation on pages that is in progress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,7 +62,7 @@ pub enum Event<'a> {
 
 /// The result of an upload.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Done {
+pub struct PageCounts {
     /// Number of pages written.
     pub written: usize,
     /// Number of pages that were already right.
@@ -170,7 +170,7 @@ pub fn upload<B: Board>(
     image: &Image,
     target: Target,
     report: &mut dyn FnMut(Event<'_>),
-) -> Result<Done, UploadError> {
+) -> Result<PageCounts, UploadError> {
     let mut upload = Upload {
         loader,
         image,
@@ -180,7 +180,7 @@ pub fn upload<B: Board>(
         has_reported: false,
         flash_state: FlashState::Unchanged,
     };
-    let mut written = vec![false; BOOT / PAGE];
+    let mut written = vec![false; BOOT_ADDRESS / PAGE_BYTES];
     let mut loaders = target.loaders().iter().copied().cycle();
     let mut kind = Kind::Optiboot;
     for attempt in 1.. {
@@ -189,11 +189,11 @@ pub fn upload<B: Board>(
         }
         let trouble = match upload.attempt(kind, &mut written) {
             Ok(()) => break,
-            Err(AttemptError::Error(error)) => return Err(error),
+            Err(AttemptError::UploadFailed(error)) => return Err(error),
             Err(AttemptError::Loader(trouble)) => trouble,
         };
         if attempt == ATTEMPTS || !trouble.is_transient() {
-            return Err(upload.failure(trouble));
+            return Err(upload.upload_error(trouble));
         }
         let next = match upload.has_answered {
             true => kind,
@@ -207,7 +207,7 @@ pub fn upload<B: Board>(
     }
     let pages = image.pages().len();
     let written = written.into_iter().filter(|done| *done).count();
-    Ok(Done {
+    Ok(PageCounts {
         written,
         kept: pages - written,
     })
@@ -218,7 +218,7 @@ enum AttemptError {
     /// The boot loader failed; another attempt may help.
     Loader(LoaderError),
     /// The upload failed for good.
-    Error(UploadError),
+    UploadFailed(UploadError),
 }
 
 impl From<LoaderError> for AttemptError {
@@ -248,19 +248,19 @@ impl<B: Board> Upload<'_, B> {
         self.has_answered = true;
         let chip = Chip(self.loader.signature()?);
         if chip != Chip::ATMEGA328P {
-            return Err(AttemptError::Error(UploadError::Chip(chip)));
+            return Err(AttemptError::UploadFailed(UploadError::Chip(chip)));
         }
         let room = self.target.check_room(self.image, kind);
-        room.map_err(|error| AttemptError::Error(error.into()))?;
+        room.map_err(|error| AttemptError::UploadFailed(error.into()))?;
         let flash = self.read_flash(kind.start())?;
         let mut goal = self.image.pages();
         goal.retain(|page| flash[page.range()] != page.bytes);
         if !goal.is_empty() {
             for page in &goal {
-                written[page.address / PAGE] = true;
+                written[page.address / PAGE_BYTES] = true;
             }
             // The first page had other contents meanwhile, so it is written again.
-            written[self.first_page().address / PAGE] = true;
+            written[self.first_page().address / PAGE_BYTES] = true;
             self.write_pages(goal, &flash)?;
         }
         // An error does not matter: everything is written, and the program starts after a second in any case.
@@ -278,12 +278,12 @@ impl<B: Board> Upload<'_, B> {
     /// Writes pages. Blanks or idles the image's first page before the others, and writes it last.
     fn write_pages(&mut self, mut goal: Vec<Page>, flash: &[u8]) -> Result<(), AttemptError> {
         let first = self.first_page();
-        let mut placeholder = [BLANK; PAGE];
+        let mut placeholder = [BLANK; PAGE_BYTES];
         if self.image.is_robot_alone() {
             self.flash_state = FlashState::HalfRobot;
         } else {
             self.flash_state = FlashState::HalfProgram;
-            placeholder[..IDLE.len()].copy_from_slice(&IDLE);
+            placeholder[..IDLE_JUMP.len()].copy_from_slice(&IDLE_JUMP);
         }
         goal.retain(|page| page.address != first.address);
         if !goal.is_empty() && flash[first.range()] != placeholder {
@@ -296,16 +296,16 @@ impl<B: Board> Upload<'_, B> {
     /// Reads flash up to the boot loader and reports its contents. For a robot alone, reads only the first page of
     /// the code and the pages of the old and the new robot.
     fn read_flash(&mut self, boot: usize) -> Result<Vec<u8>, AttemptError> {
-        let mut flash = vec![BLANK; BOOT];
+        let mut flash = vec![BLANK; BOOT_ADDRESS];
         if self.image.is_robot_alone() {
             self.read(&mut flash, 0..1)?;
-            self.read(&mut flash, ROBOT..ROBOT + 1)?;
+            self.read(&mut flash, ROBOT_PAGE..ROBOT_PAGE + 1)?;
             let end = self.image.end().max(end_of_robot(&flash, boot));
-            self.read(&mut flash, ROBOT + 1..end.div_ceil(PAGE))?;
+            self.read(&mut flash, ROBOT_PAGE + 1..end.div_ceil(PAGE_BYTES))?;
         } else {
-            self.read(&mut flash, 0..boot / PAGE)?;
+            self.read(&mut flash, 0..boot / PAGE_BYTES)?;
         }
-        let contents = FlashContents::in_flash(&flash, self.image);
+        let contents = FlashContents::compare(&flash, self.image);
         if self.image.is_robot_alone() {
             self.check_code(&contents)?;
         }
@@ -319,7 +319,7 @@ impl<B: Board> Upload<'_, B> {
     /// Checks that the code in flash can read the robot that is to be written after it.
     fn check_code(&self, contents: &FlashContents) -> Result<(), AttemptError> {
         let contents = contents.clone();
-        Err(AttemptError::Error(match contents.program {
+        Err(AttemptError::UploadFailed(match contents.program {
             Program::Lizard { mark, .. } if mark.format == FORMAT => return Ok(()),
             Program::Lizard { mark, .. } => UploadError::Format {
                 found: contents,
@@ -332,9 +332,9 @@ impl<B: Board> Upload<'_, B> {
     fn read(&mut self, flash: &mut [u8], pages: Range<usize>) -> Result<(), AttemptError> {
         let page_count = pages.len();
         for (done, page) in pages.enumerate() {
-            let address = page * PAGE;
+            let address = page * PAGE_BYTES;
             let read = self.loader.read_page(address)?;
-            flash[address..address + PAGE].copy_from_slice(&read);
+            flash[address..address + PAGE_BYTES].copy_from_slice(&read);
             (self.report)(Event::Progress(Step::Reading, done + 1, page_count));
         }
         Ok(())
@@ -353,7 +353,7 @@ impl<B: Board> Upload<'_, B> {
                 read_back = self.loader.read_page(page.address)?;
             }
             if let Some(offset) = difference(&read_back, &page.bytes) {
-                return Err(AttemptError::Error(UploadError::NotKept {
+                return Err(AttemptError::UploadFailed(UploadError::NotKept {
                     address: page.address + offset,
                     written: page.bytes[offset],
                     read: read_back[offset],
@@ -365,12 +365,15 @@ impl<B: Board> Upload<'_, B> {
         Ok(())
     }
 
-    fn write_page(&mut self, address: usize, bytes: &[u8; PAGE]) -> Result<(), AttemptError> {
-        assert!(address < BOOT, "an image ends before the boot loader");
+    fn write_page(&mut self, address: usize, bytes: &[u8; PAGE_BYTES]) -> Result<(), AttemptError> {
+        assert!(
+            address < BOOT_ADDRESS,
+            "an image ends before the boot loader"
+        );
         Ok(self.loader.write_page(address, bytes)?)
     }
 
-    fn failure(&self, trouble: LoaderError) -> UploadError {
+    fn upload_error(&self, trouble: LoaderError) -> UploadError {
         match trouble {
             LoaderError::Silent if !self.has_answered => UploadError::NoLoader,
             trouble => UploadError::Broken {

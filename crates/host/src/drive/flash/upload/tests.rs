@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use lizard_core::numbers::mark::ADDRESS;
 
-use super::super::double::Double;
+use super::super::double::BoardDouble;
 use super::super::stk500::Timeouts;
 use super::super::target::Model;
 use super::*;
@@ -21,39 +21,39 @@ fn image() -> Image {
 }
 
 /// The addresses of the pages of [`image`].
-const PAGES: [usize; 5] = [0, 0x80, 0x100, 0x180, 0x200];
+const PAGE_ADDRESSES: [usize; 5] = [0, 0x80, 0x100, 0x180, 0x200];
 
 fn bytes(count: usize, factor: usize) -> Vec<u8> {
     (0..count).map(|at| (at * factor + 1) as u8).collect()
 }
 
 /// A board whose flash holds [`image`].
-fn with_image() -> Double {
-    Double::with(image().bytes())
+fn with_image() -> BoardDouble {
+    BoardDouble::with(image().bytes())
 }
 
 /// The result of an upload, its events, and the board afterwards.
 struct Run {
-    result: Result<Done, UploadError>,
+    result: Result<PageCounts, UploadError>,
     found: Vec<String>,
-    again: usize,
-    board: Double,
+    retries: usize,
+    board: BoardDouble,
 }
 
-fn run(board: Double) -> Run {
+fn run(board: BoardDouble) -> Run {
     run_with(board, &image())
 }
 
-fn run_with(board: Double, image: &Image) -> Run {
+fn run_with(board: BoardDouble, image: &Image) -> Run {
     run_as(board, image, Target::default())
 }
 
 /// Uploads to a board. `target` is what is known about the board before its boot loader answers.
-fn run_as(board: Double, image: &Image, target: Target) -> Run {
+fn run_as(board: BoardDouble, image: &Image, target: Target) -> Run {
     let timeouts = Timeouts {
         blink_time: Duration::ZERO,
         call: Duration::from_millis(2),
-        quiet: Duration::ZERO,
+        drain_time: Duration::ZERO,
         answer: Duration::from_millis(5),
     };
     let mut loader = Loader::new(board, timeouts);
@@ -67,16 +67,16 @@ fn run_as(board: Double, image: &Image, target: Target) -> Run {
     Run {
         result,
         found,
-        again,
+        retries: again,
         board,
     }
 }
 
 impl Run {
     /// Checks that the board has the image, was told to start it, and kept its boot loader.
-    fn assert_written(&self) -> Done {
+    fn assert_written(&self) -> PageCounts {
         let done = *self.result.as_ref().expect("it is written");
-        let (flash, blank) = (&self.board.flash, Double::blank().flash);
+        let (flash, blank) = (&self.board.flash, BoardDouble::blank().flash);
         assert_eq!(flash[..600], bytes(600, 3));
         assert_eq!(flash[0x7e00..], blank[0x7e00..], "the boot loader");
         assert!(self.board.has_started_program, "the program is started");
@@ -95,8 +95,8 @@ impl Run {
 }
 
 /// A board with the firmware and the robot of this name.
-fn with_robot(name: &str) -> Double {
-    Double::with(whole_image(name).bytes())
+fn with_robot(name: &str) -> BoardDouble {
+    BoardDouble::with(whole_image(name).bytes())
 }
 
 fn robot_image(name: &str) -> Image {
@@ -104,8 +104,8 @@ fn robot_image(name: &str) -> Image {
 }
 
 /// The name of the robot that the firmware would load.
-fn robot_name(board: &Double) -> Option<String> {
-    robot_in(&board.flash[..BOOT]).map(|robot| robot.robot_name().map(char::from).collect())
+fn robot_name(board: &BoardDouble) -> Option<String> {
+    robot_in(&board.flash[..BOOT_ADDRESS]).map(|robot| robot.robot_name().map(char::from).collect())
 }
 
 /// The firmware's image with the robot of the robot file of this name.
@@ -115,20 +115,20 @@ fn whole_image(name: &str) -> Image {
 
 #[test]
 fn a_blank_board_gets_every_page_of_the_image_and_no_other() {
-    let run = run(Double::blank());
+    let run = run(BoardDouble::blank());
     let done = run.assert_written();
     assert_eq!((done.written, done.kept), (5, 0));
     assert_eq!(run.found, ["the board has no program"]);
     assert!(run.board.flash[0x280..0x7e00].iter().all(|&it| it == 0xff));
-    assert_eq!((run.board.resets, run.again), (1, 0));
+    assert_eq!((run.board.resets, run.retries), (1, 0));
 }
 
 #[test]
 fn the_first_page_is_a_loop_that_does_nothing_until_all_others_are_written() {
-    let run = run(Double::with(&[9; 5000]));
+    let run = run(BoardDouble::with(&[9; 5000]));
     run.assert_written();
     assert_eq!(run.found, ["the board has another program, of 5000 bytes"]);
-    assert_eq!(run.board.written, [&PAGES[..], &[0]].concat());
+    assert_eq!(run.board.written, [&PAGE_ADDRESSES[..], &[0]].concat());
 }
 
 #[test]
@@ -152,7 +152,7 @@ fn only_pages_that_differ_are_written() {
 
 #[test]
 fn a_loader_that_answers_only_the_third_call_is_waited_for() {
-    let mut board = Double::blank();
+    let mut board = BoardDouble::blank();
     board.ignored_calls = 2;
     let run = run(board);
     run.assert_written();
@@ -161,7 +161,7 @@ fn a_loader_that_answers_only_the_third_call_is_waited_for() {
 
 #[test]
 fn output_of_the_old_program_before_the_answer_is_skipped() {
-    let mut board = Double::with(&[9; 500]);
+    let mut board = BoardDouble::with(&[9; 500]);
     // The output contains both bytes of an answer, but not next to each other.
     board.garbage = b"# t=1\r\n\x14\x15\x10ok\r\n".repeat(30);
     run(board).assert_written();
@@ -169,7 +169,7 @@ fn output_of_the_old_program_before_the_answer_is_skipped() {
 
 #[test]
 fn a_board_that_never_answers_is_called_after_four_resets_and_not_written() {
-    let mut board = Double::with(&[9; 500]);
+    let mut board = BoardDouble::with(&[9; 500]);
     board.is_mute = true;
     let run = run(board);
     assert!(matches!(run.result, Err(UploadError::NoLoader)));
@@ -177,7 +177,7 @@ fn a_board_that_never_answers_is_called_after_four_resets_and_not_written() {
         run.error()
             .starts_with("no boot loader answers. Is it a UNO or a Nano?")
     );
-    assert_eq!((run.board.resets, run.again), (4, 3));
+    assert_eq!((run.board.resets, run.retries), (4, 3));
     assert!(run.board.written.is_empty());
 }
 
@@ -218,7 +218,7 @@ fn a_board_that_never_stops_sending_is_not_a_boot_loader() {
 #[test]
 fn another_chip_is_named_and_not_written() {
     let words = |signature| {
-        let mut board = Double::blank();
+        let mut board = BoardDouble::blank();
         board.signature = signature;
         let run = run(board);
         assert!(run.board.written.is_empty());
@@ -235,11 +235,11 @@ fn another_chip_is_named_and_not_written() {
 #[test]
 fn any_one_byte_lost_on_the_way_to_the_board_is_recovered() {
     let old = [9; 500];
-    let whole = run(Double::with(&old)).board;
+    let whole = run(BoardDouble::with(&old)).board;
     assert!(whole.received > 2000, "{} bytes", whole.received);
     // Reading a page sends 9 bytes: steps of 7 lose each of the 9 at some page.
     for at in (0..whole.received).step_by(7) {
-        let mut board = Double::with(&old);
+        let mut board = BoardDouble::with(&old);
         board.lost_byte_to_board = Some(at);
         let run = run(board);
         assert!(run.result.is_ok(), "byte {at}: {}", run.error());
@@ -252,11 +252,11 @@ fn any_one_byte_lost_on_the_way_to_the_board_is_recovered() {
 #[test]
 fn any_one_byte_lost_on_the_way_from_the_board_is_recovered() {
     let old = [9; 500];
-    let whole = run(Double::with(&old)).board;
+    let whole = run(BoardDouble::with(&old)).board;
     assert!(whole.sent > 30_000, "{} bytes", whole.sent);
     // Each byte of the call and of the first pages, then every 101st byte.
     for at in (0..300).chain((300..whole.sent).step_by(101)) {
-        let mut board = Double::with(&old);
+        let mut board = BoardDouble::with(&old);
         board.lost_byte_from_board = Some(at);
         let run = run(board);
         assert!(run.result.is_ok(), "byte {at}: {}", run.error());
@@ -266,7 +266,7 @@ fn any_one_byte_lost_on_the_way_from_the_board_is_recovered() {
 
 #[test]
 fn a_byte_that_the_flash_does_not_keep_is_named_and_the_board_does_nothing() {
-    let mut board = Double::with(&[9; 500]);
+    let mut board = BoardDouble::with(&[9; 500]);
     let right = image().bytes()[0x85];
     board.stuck_bits = Some((0x85, right & right.wrapping_neg()));
     let run = run(board);
@@ -274,13 +274,13 @@ fn a_byte_that_the_flash_does_not_keep_is_named_and_the_board_does_nothing() {
     assert!(words.contains("the byte at address 0x0085"), "{words}");
     assert!(words.ends_with("run this command again"), "{words}");
     assert!(run.starts_in_a_loop());
-    assert_eq!(run.again, 0, "another reset does not mend flash");
+    assert_eq!(run.retries, 0, "another reset does not mend flash");
 }
 
 #[test]
 fn a_board_unplugged_midway_does_nothing_until_the_next_upload() {
     for pages in 1..=5 {
-        let mut board = Double::with(&[9; 500]);
+        let mut board = BoardDouble::with(&[9; 500]);
         board.unplugged_after = Some(pages);
         let cut = run(board);
         let words = cut.error();
@@ -298,7 +298,7 @@ fn a_board_unplugged_midway_does_nothing_until_the_next_upload() {
 
 #[test]
 fn a_board_unplugged_before_the_first_page_is_unchanged() {
-    let mut board = Double::with(&[9; 500]);
+    let mut board = BoardDouble::with(&[9; 500]);
     board.unplugged_after = Some(0);
     let run = run(board);
     assert!(

@@ -6,7 +6,7 @@
 use lizard_robot::Robot;
 use svg::node::element::Group;
 
-use super::wire::{BLACK, THIN, end};
+use super::wire::{BLACK, THIN, draw_terminal};
 use crate::shared::ink::{
     DARK, GREY, ORANGE, RED, circle, curve, edged, line, pin_name, rectangle, text_end, text_start,
 };
@@ -16,7 +16,7 @@ const HEIGHT: f64 = 214.0;
 /// x of the board's pins, pixels.
 const BOARD: f64 = 120.0;
 /// x of the pins of the button and of the obstacle switch, pixels.
-const THING: f64 = 400.0;
+const COMPONENT_X: f64 = 400.0;
 /// Pixels from a row to the next one.
 const ROW: f64 = 26.0;
 /// Distance of the button's first row from the panel's top, pixels.
@@ -53,7 +53,7 @@ pub fn draw(robot: &Robot, top: f64) -> Group {
 fn wire(group: Group, names: [&str; 3], y: f64, colour: &'static str) -> Group {
     let [thing, of_board, of_thing] = names;
     // The wire crosses no other wire, so it needs no white edge, which would cut the component's outline.
-    let path = curve(&[(BOARD, y), (THING, y)], colour, THIN);
+    let path = curve(&[(BOARD, y), (COMPONENT_X, y)], colour, THIN);
     group
         .add(path.set("id", format!("input-{thing}-{of_board}")))
         .add(text_end(
@@ -61,21 +61,39 @@ fn wire(group: Group, names: [&str; 3], y: f64, colour: &'static str) -> Group {
             (BOARD - 10.0, y + 5.0),
             13.0,
         ))
-        .add(text_start(of_thing, (THING + 40.0, y + 5.0), 13.0))
-        .add(end(&format!("{thing}-{of_board}"), (BOARD, y), DARK))
-        .add(end(&format!("{thing}-at-{of_board}"), (THING, y), DARK))
+        .add(text_start(of_thing, (COMPONENT_X + 40.0, y + 5.0), 13.0))
+        .add(draw_terminal(
+            &format!("{thing}-{of_board}"),
+            (BOARD, y),
+            DARK,
+        ))
+        .add(draw_terminal(
+            &format!("{thing}-at-{of_board}"),
+            (COMPONENT_X, y),
+            DARK,
+        ))
 }
 
 /// A push button between its pin and ground.
 fn draw_button(group: Group, pin: u8, y: f64) -> Group {
-    let case = rectangle((THING - 12.0, y - 14.0), (44.0, ROW + 28.0), "#e6eef7").set("rx", 5);
+    let case = rectangle(
+        (COMPONENT_X - 12.0, y - 14.0),
+        (44.0, ROW + 28.0),
+        "#e6eef7",
+    )
+    .set("rx", 5);
     let middle = y + ROW / 2.0;
     let group = group
         .add(edged(case, DARK, 1.5))
-        .add(line((THING, y), (THING + 16.0, y), DARK, THIN))
-        .add(line((THING, y + ROW), (THING + 16.0, y + ROW), DARK, THIN))
+        .add(line((COMPONENT_X, y), (COMPONENT_X + 16.0, y), DARK, THIN))
+        .add(line(
+            (COMPONENT_X, y + ROW),
+            (COMPONENT_X + 16.0, y + ROW),
+            DARK,
+            THIN,
+        ))
         .add(edged(
-            circle((THING + 20.0, middle), 8.0, "white"),
+            circle((COMPONENT_X + 20.0, middle), 8.0, "white"),
             DARK,
             1.5,
         ));
@@ -96,7 +114,7 @@ fn draw_button(group: Group, pin: u8, y: f64) -> Group {
 /// An infrared obstacle switch at the robot's nose.
 fn draw_nose(group: Group, pin: u8, y: f64) -> Group {
     let case = rectangle(
-        (THING - 12.0, y - 14.0),
+        (COMPONENT_X - 12.0, y - 14.0),
         (44.0, 2.0 * ROW + 28.0),
         "#e6eef7",
     )

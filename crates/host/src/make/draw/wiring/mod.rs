@@ -13,20 +13,20 @@ use lizard_robot::servo::NAMES;
 use lizard_robot::{FUSE, Robot, SWITCH};
 use svg::node::element::Group;
 
-use super::route::{GAP, Path, below, beside, between_rows};
+use super::route::{GAP, Path, between_rows, route_end, turn_point};
 use super::uno::Uno;
 use crate::shared::ink::pin_name;
 use crate::shared::ink::{
     BROWN, DARK, GREY, ORANGE, PLACES, RED, SERVO, circle, cross, edged, line, page, rectangle,
     text_middle, text_start,
 };
-use wire::{BLACK, THICK, THIN, Wire, end};
+use wire::{BLACK, THICK, THIN, Wire, draw_terminal};
 
 const WIDTH: f64 = 700.0;
 /// Horizontal position of the middle of the leftmost servo.
 const FIRST: f64 = 170.0;
 /// Distance between the middles of neighbouring servos.
-const APART: f64 = 118.0;
+const SERVO_SPACING: f64 = 118.0;
 /// Vertical position of the upper edges of the servos.
 const TOP: f64 = 420.0;
 /// Width and height of a servo on the page.
@@ -83,7 +83,7 @@ pub fn wiring(robot: &Robot) -> String {
         group = group.add(text_start(words, (16.0, y), 14.0));
     }
     let inputs = option + radio::HEIGHT;
-    group = group.add(at_board()).add(radio::draw(option));
+    group = group.add(draw_board_notes()).add(radio::draw(option));
     if inputs::height(robot) > 0.0 {
         group = group.add(inputs::draw(robot, inputs));
     }
@@ -106,31 +106,31 @@ fn order(pins: [u8; 4]) -> [usize; 4] {
 }
 
 /// Horizontal position of the middle of a servo; `index` counts the servos from left to right.
-fn middle(index: usize) -> f64 {
-    FIRST + APART * index as f64
+fn servo_x(index: usize) -> f64 {
+    FIRST + SERVO_SPACING * index as f64
 }
 
 /// The wires of the servos, and those of their signals to the board. `order` has the servos from left to right.
 fn servo_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
     let mut wires = Vec::new();
     for (index, servo) in order.into_iter().enumerate() {
-        let (x, name) = (middle(index), NAMES[servo]);
-        let ground = strips::ground(supply::SERVOS + index);
+        let (x, name) = (servo_x(index), NAMES[servo]);
+        let ground = strips::ground_hole(supply::FIRST_SERVO_WAY + index);
         let brown = vec![(x + LEAD, TOP), (x + LEAD, ground.1), ground];
         wires.push(Wire::new(format!("ground-{name}"), brown, BROWN, THIN));
         // The first ways of the strip belong to the converter and the capacitor.
-        let plus = strips::supply(strips::SUPPLIES - 1 - index);
+        let plus = strips::supply_hole(strips::SUPPLIES - 1 - index);
         let red = vec![(x - LEAD, TOP), (x - LEAD, plus.1), plus];
         wires.push(Wire::new(format!("plus-{name}"), red, RED, THIN));
     }
     let places: [usize; 4] = [0, 1, 2, 3];
-    let from = places.map(|index| (middle(index), TOP + BODY.1));
-    let paths = between_rows(&from, &places.map(strips::servo), LEVELS[0]);
+    let from = places.map(|index| (servo_x(index), TOP + BODY.1));
+    let paths = between_rows(&from, &places.map(strips::servo_hole), LEVELS[0]);
     for (servo, path) in order.into_iter().zip(paths) {
         let name = format!("signal-{}", NAMES[servo]);
         wires.push(Wire::new(name, path, ORANGE, THIN));
     }
-    let last = strips::ground(strips::GROUNDS - 1);
+    let last = strips::ground_hole(strips::GROUNDS - 1);
     let to = strips::signal_ground();
     let level = GROUND_LEVELS[0];
     let path = vec![
@@ -151,7 +151,7 @@ fn board_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
     let level = GROUND_LEVELS[1];
     let path = vec![from, (from.0, level), (to.0, level), to];
     let mut wires = vec![Wire::new("board-ground", path, BROWN, THIN)];
-    let from = [0, 1, 2, 3].map(strips::board);
+    let from = [0, 1, 2, 3].map(strips::board_hole);
     let mut around = 0;
     let mut ends: Vec<Path> = Vec::new();
     let to = order.map(|servo| {
@@ -160,9 +160,9 @@ fn board_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
             ends.push(vec![]);
             return pin;
         }
-        ends.push(below(UNO.far_corner(), around, pin));
+        ends.push(route_end(UNO.far_corner(), around, pin));
         around += 1;
-        beside(UNO.far_corner(), around - 1)
+        turn_point(UNO.far_corner(), around - 1)
     });
     let paths = between_rows(&from, &to, LEVELS[1]);
     for ((servo, mut path), end) in order.into_iter().zip(paths).zip(ends) {
@@ -175,7 +175,7 @@ fn board_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
 
 /// A servo from above, with its name, its place in the robot and its pin.
 fn body(servo: usize, index: usize, pin: u8) -> Group {
-    let x = middle(index);
+    let x = servo_x(index);
     let colour = SERVO[servo];
     let corner = (x - BODY.0 / 2.0, TOP);
     let name = NAMES[servo];
@@ -197,13 +197,21 @@ fn body(servo: usize, index: usize, pin: u8) -> Group {
             (x + 28.0, TOP + 46.0),
             13.0,
         ))
-        .add(end(&format!("{name}-ground"), (x + LEAD, TOP), BROWN))
-        .add(end(&format!("{name}-plus"), (x - LEAD, TOP), RED))
-        .add(end(&format!("{name}-signal"), (x, TOP + BODY.1), ORANGE))
+        .add(draw_terminal(
+            &format!("{name}-ground"),
+            (x + LEAD, TOP),
+            BROWN,
+        ))
+        .add(draw_terminal(&format!("{name}-plus"), (x - LEAD, TOP), RED))
+        .add(draw_terminal(
+            &format!("{name}-signal"),
+            (x, TOP + BODY.1),
+            ORANGE,
+        ))
 }
 
 /// The cable to a computer, and the 5V pin, which stays free.
-fn at_board() -> Group {
+fn draw_board_notes() -> Group {
     let five = UNO.five_volts();
     let edge = UNO.far_corner().1;
     let usb = UNO.corner.1 + 82.0;

@@ -6,7 +6,7 @@
 
 use svg::node::element::{Group, Polygon};
 
-use super::wire::{BLACK, LEG, THIN, Wire, end};
+use super::wire::{BLACK, LEG, THIN, Wire, draw_terminal};
 use crate::shared::ink::{
     DARK, GREY, ORANGE, RED, circle, curve, edged, line, rectangle, text_end, text_middle,
     text_start,
@@ -92,8 +92,12 @@ pub fn draw(top: f64) -> Group {
                 13.0,
             ))
             .add(text_start(of_module, (MODULE + 10.0, y + 5.0), 13.0))
-            .add(end(&format!("radio-{pin}"), (BOARD, y), DARK))
-            .add(end(&format!("radio-module-{of_module}"), (MODULE, y), DARK));
+            .add(draw_terminal(&format!("radio-{pin}"), (BOARD, y), DARK))
+            .add(draw_terminal(
+                &format!("radio-module-{of_module}"),
+                (MODULE, y),
+                DARK,
+            ));
     }
     let words = "The diode's stripe is at the module. It lets the module only pull D0 low, so USB still works.";
     group.add(text_start(words, (30.0, top + 220.0), 13.0))
@@ -114,8 +118,8 @@ fn draw_diode(group: Group, (x, y): (f64, f64)) -> Group {
         .add(line((x - 12.0, y), (x + 12.0, y), DARK, LEG))
         .add(Polygon::new().set("points", corners).set("fill", DARK))
         .add(line((x + 9.0, y - 9.0), (x + 9.0, y + 9.0), DARK, 3.0))
-        .add(end("diode-anode", (x - 12.0, y), DARK))
-        .add(end("diode-cathode", (x + 12.0, y), DARK))
+        .add(draw_terminal("diode-anode", (x - 12.0, y), DARK))
+        .add(draw_terminal("diode-cathode", (x + 12.0, y), DARK))
 }
 
 fn draw_resistor(group: Group, (x, y): (f64, f64), (width, height): (f64, f64)) -> Group {

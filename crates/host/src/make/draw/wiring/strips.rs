@@ -5,7 +5,7 @@
 
 use svg::node::element::Group;
 
-use super::wire::{BLACK, LEG, THICK, Wire, end};
+use super::wire::{BLACK, LEG, THICK, Wire, draw_terminal};
 use crate::make::draw::route::Path;
 use crate::shared::ink::{
     DARK, ORANGE, RED, circle, edged, line, rectangle, text_middle, text_start,
@@ -14,7 +14,7 @@ use crate::shared::ink::{
 /// Pixels between neighbouring ways of the upright strips.
 const PITCH: f64 = 22.0;
 /// Width of a strip, pixels.
-const WIDE: f64 = 36.0;
+const STRIP_WIDTH: f64 = 36.0;
 /// Reach of a link beyond its strip, pixels.
 const LINK: f64 = 11.0;
 /// Number of ways of the ground strip that have links; two more ways are spare.
@@ -35,12 +35,12 @@ const SIGNALS_AT: (f64, f64) = (597.0, 633.0);
 const JUMPER: f64 = 5.0;
 
 /// The wire hole of a way of the ground strip; ways count from 0.
-pub fn ground(way: usize) -> (f64, f64) {
+pub fn ground_hole(way: usize) -> (f64, f64) {
     (GROUND.0, GROUND.1 + PITCH * way as f64)
 }
 
 /// The wire hole of a way of the +5 V strip; ways count from 0.
-pub fn supply(way: usize) -> (f64, f64) {
+pub fn supply_hole(way: usize) -> (f64, f64) {
     (SUPPLY.0, SUPPLY.1 + PITCH * way as f64)
 }
 
@@ -59,7 +59,7 @@ fn signal_x(way: usize) -> f64 {
 }
 
 /// The hole of the signal strip for a servo's signal; `index` counts the servos from left to right.
-pub fn servo(index: usize) -> (f64, f64) {
+pub fn servo_hole(index: usize) -> (f64, f64) {
     (signal_x(way_of_servo(index)), SIGNALS_AT.0)
 }
 
@@ -69,7 +69,7 @@ pub fn signal_ground() -> (f64, f64) {
 }
 
 /// The hole of the signal strip for a servo's jumper to the board; `index` counts the servos from left to right.
-pub fn board(index: usize) -> (f64, f64) {
+pub fn board_hole(index: usize) -> (f64, f64) {
     let outward = if index < 2 { -JUMPER } else { JUMPER };
     (signal_x(way_of_servo(index)) + outward, SIGNALS_AT.1)
 }
@@ -87,12 +87,12 @@ pub fn links() -> Vec<Wire> {
         Wire::new(name, path, if out > 0.0 { BLACK } else { RED }, THICK - 1.0)
     };
     let grounds = (1..GROUNDS).map(|way| {
-        let (x, y) = ground(way - 1);
-        link(format!("link-ground-{way}"), LINK, (x + WIDE, y))
+        let (x, y) = ground_hole(way - 1);
+        link(format!("link-ground-{way}"), LINK, (x + STRIP_WIDTH, y))
     });
     let supplies = (1..SUPPLIES).map(|way| {
-        let (x, y) = supply(way - 1);
-        link(format!("link-supply-{way}"), -LINK, (x - WIDE, y))
+        let (x, y) = supply_hole(way - 1);
+        link(format!("link-supply-{way}"), -LINK, (x - STRIP_WIDTH, y))
     });
     grounds.chain(supplies).collect()
 }
@@ -155,23 +155,31 @@ fn case(corner: (f64, f64), size: (f64, f64)) -> svg::node::element::Rectangle {
 pub fn draw() -> Group {
     let mut group = Group::new();
     let upright = |ways: usize, left: f64, top: f64| {
-        let size = (WIDE, PITCH * ways as f64);
+        let size = (STRIP_WIDTH, PITCH * ways as f64);
         case((left, top - PITCH / 2.0), size)
     };
     group = group
         .add(upright(GROUND_WAYS, GROUND.0, GROUND.1))
-        .add(upright(SUPPLIES, SUPPLY.0 - WIDE, SUPPLY.1));
+        .add(upright(SUPPLIES, SUPPLY.0 - STRIP_WIDTH, SUPPLY.1));
     let upright = [("ground", GROUND_WAYS), ("supply", SUPPLIES)];
     for (name, ways) in upright {
         for way in 0..ways {
             let (hole, other) = match name {
-                "ground" => (ground(way), WIDE),
-                _ => (supply(way), -WIDE),
+                "ground" => (ground_hole(way), STRIP_WIDTH),
+                _ => (supply_hole(way), -STRIP_WIDTH),
             };
             let link = (hole.0 + other, hole.1);
             group = draw_brass_strip(group, hole, link, way + 1)
-                .add(end(&format!("{name}-{}-wire", way + 1), hole, DARK))
-                .add(end(&format!("{name}-{}-link", way + 1), link, DARK));
+                .add(draw_terminal(
+                    &format!("{name}-{}-wire", way + 1),
+                    hole,
+                    DARK,
+                ))
+                .add(draw_terminal(
+                    &format!("{name}-{}-link", way + 1),
+                    link,
+                    DARK,
+                ));
         }
     }
     let (top, bottom) = SIGNALS_AT;
@@ -183,8 +191,12 @@ pub fn draw() -> Group {
     for way in 0..5 {
         let x = signal_x(way);
         group = draw_brass_strip(group, (x, top + 3.0), (x, bottom - 3.0), way + 1)
-            .add(end(&format!("signals-{}-servo", way + 1), (x, top), ORANGE))
-            .add(end(
+            .add(draw_terminal(
+                &format!("signals-{}-servo", way + 1),
+                (x, top),
+                ORANGE,
+            ))
+            .add(draw_terminal(
                 &format!("signals-{}-board", way + 1),
                 (x, bottom),
                 ORANGE,

@@ -4,8 +4,8 @@
 use lizard_robot::{FUSE, SWITCH};
 use svg::node::element::Group;
 
-use super::strips::{ground, supply};
-use super::wire::{BLACK, GREY_WIRE, LEG, THICK, THIN, Wire, end};
+use super::strips::{ground_hole, supply_hole};
+use super::wire::{BLACK, GREY_WIRE, LEG, THICK, THIN, Wire, draw_terminal};
 use crate::make::draw::route::Path;
 use crate::shared::ink::{DARK, RED, edged, line, rectangle, text_end, text_middle, text_start};
 
@@ -52,12 +52,12 @@ const GROUND_OF: [(&str, usize); 5] = [
 ];
 
 /// The first way of the ground strip for a servo.
-pub const SERVOS: usize = GROUND_OF.len();
+pub const FIRST_SERVO_WAY: usize = GROUND_OF.len();
 
 /// The wire hole of the ground strip for a part of the supply.
 fn ground_way(name_of_part: &str) -> Point {
     let index = GROUND_OF.iter().find(|(name, _)| *name == name_of_part);
-    ground(index.map_or(0, |(_, way)| *way))
+    ground_hole(index.map_or(0, |(_, way)| *way))
 }
 
 /// All wires of the supply; `socket` is the middle of the board's round socket.
@@ -65,7 +65,7 @@ pub fn wires(socket: Point) -> Vec<Wire> {
     let [plug_plus, plug_minus] = round_plug(socket);
     let segment = |a: Point, b: Point| vec![a, b];
     let thick = |name: &str, path: Path, colour| Wire::new(name, path, colour, THICK);
-    let out = supply(0);
+    let out = supply_hole(0);
     let minus = ground_way("battery");
     let inner = ground_way("converter-in");
     let outer = ground_way("converter-out");
@@ -155,7 +155,11 @@ pub fn wires(socket: Point) -> Vec<Wire> {
         segment(above, ground_way("capacitor")),
         BLACK,
     ));
-    wires.push(thick("capacitor-supply", segment(below, supply(1)), RED));
+    wires.push(thick(
+        "capacitor-supply",
+        segment(below, supply_hole(1)),
+        RED,
+    ));
     for (number, (y, colour)) in (1..).zip(BALANCE.into_iter().zip([RED, GREY_WIRE, BLACK])) {
         let path = segment((BATTERY, y), (ALARM, y));
         wires.push(Wire::new(format!("balance-{number}"), path, colour, LEG));
@@ -172,7 +176,7 @@ fn round_plug((x, y): Point) -> [Point; 2] {
 fn capacitor() -> [Point; 2] {
     [
         (CAPACITOR, ground_way("capacitor").1),
-        (CAPACITOR, supply(1).1),
+        (CAPACITOR, supply_hole(1).1),
     ]
 }
 
@@ -198,8 +202,8 @@ pub fn draw(socket: Point) -> Group {
         (18.0, 7.0),
         DARK,
     ))
-    .add(end("capacitor-minus", above, DARK))
-    .add(end("capacitor-plus", below, RED))
+    .add(draw_terminal("capacitor-minus", above, DARK))
+    .add(draw_terminal("capacitor-plus", below, RED))
     .add(text_start(
         "1000 µF, 10 V",
         (CAPACITOR + 8.0, above.1 - 6.0),
@@ -219,8 +223,8 @@ pub fn draw(socket: Point) -> Group {
             (10.0, 10.0),
             "#8f8f8f",
         ))
-        .add(end("round-plug-plus", plus, RED))
-        .add(end("round-plug-minus", minus, DARK))
+        .add(draw_terminal("round-plug-plus", plus, RED))
+        .add(draw_terminal("round-plug-minus", minus, DARK))
         .add(text_start("round plug,", (44.0, plus.1 - 28.0), 13.0))
         .add(text_start("+ inside", (44.0, plus.1 - 13.0), 13.0))
 }
@@ -242,7 +246,7 @@ fn draw_battery(group: Group) -> Group {
     group = inside(group, (BATTERY, BALANCE[2]), (CELLS, BALANCE[2]));
     group = inside(group, (BATTERY, MINUS), (CELLS, MINUS));
     for (number, y) in (1..).zip(BALANCE) {
-        group = group.add(end(
+        group = group.add(draw_terminal(
             &format!("battery-balance-{number}"),
             (BATTERY, y),
             DARK,
@@ -257,8 +261,8 @@ fn draw_battery(group: Group) -> Group {
         ));
     }
     group
-        .add(end("battery-plus", (BATTERY, PLUS), RED))
-        .add(end("battery-minus", (BATTERY, MINUS), DARK))
+        .add(draw_terminal("battery-plus", (BATTERY, PLUS), RED))
+        .add(draw_terminal("battery-minus", (BATTERY, MINUS), DARK))
         .add(text_end("plug", (556.0, 24.0), 12.0))
         .add(text_end("battery, 7.4 V", (690.0, 147.0), 13.0))
 }
@@ -273,7 +277,7 @@ fn draw_alarm(group: Group) -> Group {
             12.0,
         ));
     for (number, y) in (1..).zip(BALANCE) {
-        group = group.add(end(&format!("alarm-{number}"), (ALARM, y), DARK));
+        group = group.add(draw_terminal(&format!("alarm-{number}"), (ALARM, y), DARK));
     }
     group
 }
@@ -311,8 +315,8 @@ fn draw_supply_line(group: Group) -> Group {
     let ends = [("fuse", FUSE_AT), ("switch", SWITCH_AT), ("way", WAY)];
     for (name, [left, right]) in ends {
         group = group
-            .add(end(&format!("{name}-1"), (left, PLUS), RED))
-            .add(end(&format!("{name}-2"), (right, PLUS), RED));
+            .add(draw_terminal(&format!("{name}-1"), (left, PLUS), RED))
+            .add(draw_terminal(&format!("{name}-2"), (right, PLUS), RED));
     }
     group
 }
@@ -339,8 +343,20 @@ fn draw_converter(group: Group) -> Group {
             (right - 8.0, CONVERTER_MINUS + 5.0),
             12.0,
         ))
-        .add(end("converter-out-plus", (left, PLUS), RED))
-        .add(end("converter-out-minus", (left, CONVERTER_MINUS), DARK))
-        .add(end("converter-in-plus", (right, CONVERTER_IN_PLUS), RED))
-        .add(end("converter-in-minus", (right, CONVERTER_MINUS), DARK))
+        .add(draw_terminal("converter-out-plus", (left, PLUS), RED))
+        .add(draw_terminal(
+            "converter-out-minus",
+            (left, CONVERTER_MINUS),
+            DARK,
+        ))
+        .add(draw_terminal(
+            "converter-in-plus",
+            (right, CONVERTER_IN_PLUS),
+            RED,
+        ))
+        .add(draw_terminal(
+            "converter-in-minus",
+            (right, CONVERTER_MINUS),
+            DARK,
+        ))
 }

@@ -37,7 +37,7 @@ pub enum Effect {
     /// r29:r28 gets another value.
     LosePointer,
     /// `ldi r26`: the frame size that a shared prologue or epilogue gets.
-    LoadRoom(u8),
+    LoadFrameSize(u8),
 }
 
 /// A decoded instruction.
@@ -67,7 +67,7 @@ pub fn decode(flash: &[u8], address: u32) -> Option<Instruction> {
     } else {
         0
     };
-    let effect = effect(code, second, address);
+    let effect = decode_effect(code, second, address);
     Some(Instruction { effect, size })
 }
 
@@ -87,7 +87,7 @@ fn word(flash: &[u8], address: u32) -> Option<u16> {
 }
 
 /// The effect of the instruction with these words at a byte address; `second` is 0 if there is only one word.
-fn effect(code: u16, second: u16, address: u32) -> Effect {
+fn decode_effect(code: u16, second: u16, address: u32) -> Effect {
     let register = code >> 4 & 0x1f;
     match code {
         0x9508 | 0x9518 => Effect::Return, // ret, reti
@@ -105,13 +105,13 @@ fn effect(code: u16, second: u16, address: u32) -> Effect {
         _ if code & 0xfc08 == 0xfc00 => Effect::Skip,
         _ if code & 0xfd00 == 0x9900 => Effect::Skip,
         _ if code & 0xfe0f == 0x9200 && SP_DATA.contains(&second) => Effect::StackFromOther,
-        _ if code & 0xf800 == 0xb000 => match (port(code), register) {
+        _ if code & 0xf800 == 0xb000 => match (io_address(code), register) {
             (SPL, 28) => Effect::PointerFromStack,
             (SPH, 29) => Effect::None,
             (_, 28 | 29) => Effect::LosePointer,
             _ => Effect::None,
         },
-        _ if code & 0xf800 == 0xb800 => match (port(code), register) {
+        _ if code & 0xf800 == 0xb800 => match (io_address(code), register) {
             (SPL, 28) => Effect::StackFromPointer,
             (SPH, 29) => Effect::None,
             (SPL | SPH, _) => Effect::StackFromOther,
@@ -121,12 +121,12 @@ fn effect(code: u16, second: u16, address: u32) -> Effect {
         _ if code & 0xff30 == 0x9620 => Effect::AddToPointer(small_constant(code)),
         _ if code & 0xff30 == 0x9720 => Effect::AddToPointer(-small_constant(code)),
         // subi, sbci and ldi have r16 to r31 only
-        _ if code & 0xf0f0 == 0x50c0 => Effect::SubtractLow(byte(code)),
-        _ if code & 0xf0f0 == 0x40d0 => Effect::SubtractHigh(byte(code)),
+        _ if code & 0xf0f0 == 0x50c0 => Effect::SubtractLow(byte_constant(code)),
+        _ if code & 0xf0f0 == 0x40d0 => Effect::SubtractHigh(byte_constant(code)),
         0x09d1 => Effect::SubtractHigh(0), // sbc r29, r1, which is always 0
-        _ if code & 0xf0f0 == 0xe0a0 => Effect::LoadRoom(byte(code)),
-        _ if code & 0xf0f0 == 0xe0c0 => Effect::LoadLow(byte(code)),
-        _ if code & 0xf0f0 == 0xe0d0 => Effect::LoadHigh(byte(code)),
+        _ if code & 0xf0f0 == 0xe0a0 => Effect::LoadFrameSize(byte_constant(code)),
+        _ if code & 0xf0f0 == 0xe0c0 => Effect::LoadLow(byte_constant(code)),
+        _ if code & 0xf0f0 == 0xe0d0 => Effect::LoadHigh(byte_constant(code)),
         _ if code & 0xfff0 == 0x01e0 => Effect::LosePointer, // movw r28
         _ => Effect::None,
     }
@@ -148,7 +148,7 @@ fn relative_target(offset: u16, bits: u32, address: u32) -> u32 {
 }
 
 /// The I/O address of `in` and `out`.
-fn port(code: u16) -> u16 {
+fn io_address(code: u16) -> u16 {
     code >> 5 & 0x30 | code & 0x0f
 }
 
@@ -158,6 +158,6 @@ fn small_constant(code: u16) -> i16 {
 }
 
 /// The constant of `ldi` and similar instructions.
-fn byte(code: u16) -> u8 {
+fn byte_constant(code: u16) -> u8 {
     (code >> 4 & 0xf0 | code & 0x0f) as u8
 }

@@ -23,9 +23,9 @@ use simulated_uno::{Image, SRAM_END};
 use walk::{Context, Walk};
 
 /// Vectors of an ATmega328P, reset included, each a `jmp` of four bytes.
-const VECTORS: u32 = 26;
+const VECTOR_COUNT: u32 = 26;
 /// Bytes that an interrupt pushes: its return address.
-const ENTRY: u16 = 2;
+const ENTRY_BYTES: u16 = 2;
 
 /// The reason why a depth cannot be computed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -64,22 +64,24 @@ impl StackDepth {
         let unused = unused.map(|symbol| symbol.address as u32);
         let (mut handler, mut last) = (0, 0);
         let mut walk = Walk::new(image, &flash, Context::Interrupt);
-        for vector in 1..VECTORS {
+        for vector in 1..VECTOR_COUNT {
             let target = instruction::jump_target(&flash, 0)
                 .and_then(|_| instruction::jump_target(&flash, vector * 4));
             if let Some(target) = target.filter(|target| Some(*target) != unused) {
-                let function = walk.function(target)?;
-                match function.lets_in {
-                    None => handler = handler.max(ENTRY + function.depth),
-                    Some(address) if function.returns => {
+                let function = walk.analyse_function(target)?;
+                match function.interrupts_enabled_at {
+                    None => handler = handler.max(ENTRY_BYTES + function.depth),
+                    Some(address) if function.can_return => {
                         let what = "lets interrupts into an interrupt";
-                        return Err(walk.refuse(target, address, what));
+                        return Err(walk.error_at(target, address, what));
                     }
-                    Some(_) => last = last.max(ENTRY + function.depth),
+                    Some(_) => last = last.max(ENTRY_BYTES + function.depth),
                 }
             }
         }
-        let main = Walk::new(image, &flash, Context::Main).function(0)?.depth;
+        let main = Walk::new(image, &flash, Context::Main)
+            .analyse_function(0)?
+            .depth;
         let floor = image.data_end();
         Ok(Self {
             main,

@@ -39,17 +39,17 @@ struct State {
     /// The low half of a subtraction from r29:r28 whose high half follows.
     low: u8,
     /// The constant that the previous instruction loaded into r26.
-    room: Option<u8>,
+    frame_size: Option<u8>,
 }
 
 /// Shared prologues and epilogues (`tools/linker/src/frames.S`): the bytes that each saves or restores, by its
 /// address.
-struct Shared {
+struct SharedRoutines {
     save: HashMap<u32, i32>,
     restore: HashMap<u32, i32>,
 }
 
-impl Shared {
+impl SharedRoutines {
     /// Finds the shared routines of an image. Routine K saves rK to r17, r28 and r29, which are
     /// 20 - K bytes, besides the room given in r26.
     fn of(image: &Image) -> Self {
@@ -72,9 +72,9 @@ pub struct Walk<'a> {
     image: &'a Image,
     flash: &'a [u8],
     context: Context,
-    shared: Shared,
+    shared: SharedRoutines,
     /// Each function walked, by address; `None` while it is being walked.
-    known: HashMap<u32, Option<Function>>,
+    functions: HashMap<u32, Option<Function>>,
 }
 
 /// The effect of a function on the stack.
@@ -85,9 +85,9 @@ pub struct Function {
     pub depth: u16,
     /// True if the function returns. Code after a call of a function that does not return is not
     /// part of the caller.
-    pub returns: bool,
+    pub can_return: bool,
     /// The byte address at which a handler enables other interrupts; `None` if it does not.
-    pub lets_in: Option<u32>,
+    pub interrupts_enabled_at: Option<u32>,
 }
 
 impl<'a> Walk<'a> {
@@ -96,26 +96,26 @@ impl<'a> Walk<'a> {
             image,
             flash,
             context,
-            shared: Shared::of(image),
-            known: HashMap::new(),
+            shared: SharedRoutines::of(image),
+            functions: HashMap::new(),
         }
     }
 
     /// Analyses the function at `entry` and all functions that it calls.
-    pub fn function(&mut self, entry: u32) -> Result<Function, StackError> {
-        match self.known.get(&entry) {
+    pub fn analyse_function(&mut self, entry: u32) -> Result<Function, StackError> {
+        match self.functions.get(&entry) {
             Some(Some(function)) => return Ok(*function),
-            Some(None) => return Err(self.refuse(entry, entry, "calls itself")),
+            Some(None) => return Err(self.error_at(entry, entry, "calls itself")),
             None => {}
         }
-        self.known.insert(entry, None);
-        let function = self.walk(entry)?;
-        self.known.insert(entry, Some(function));
+        self.functions.insert(entry, None);
+        let function = self.follow_paths(entry)?;
+        self.functions.insert(entry, Some(function));
         Ok(function)
     }
 
     /// Follows every path through the function at `entry`.
-    fn walk(&mut self, entry: u32) -> Result<Function, StackError> {
+    fn follow_paths(&mut self, entry: u32) -> Result<Function, StackError> {
         let mut worst = 0;
         let mut returns = false;
         let mut lets_in = None;
@@ -124,14 +124,14 @@ impl<'a> Walk<'a> {
             depth: 0,
             pointer: Pointer::Unknown,
             low: 0,
-            room: None,
+            frame_size: None,
         };
         let mut open = vec![(entry, start)];
         while let Some((address, mut state)) = open.pop() {
             if let Some(state_before) = states.get(&address) {
                 if state_before.depth != state.depth {
                     let what = "is reached with more or less on the stack than before";
-                    return Err(self.refuse(entry, address, what));
+                    return Err(self.error_at(entry, address, what));
                 }
                 if state_before.pointer == state.pointer || state_before.pointer == Pointer::Unknown
                 {
@@ -141,17 +141,17 @@ impl<'a> Walk<'a> {
             }
             states.insert(address, state);
             let Some(instruction) = decode(self.flash, address) else {
-                return Err(self.refuse(entry, address, "runs out of the code"));
+                return Err(self.error_at(entry, address, "runs out of the code"));
             };
             let next = address + instruction.size;
-            let room = state.room.take().map(i32::from);
+            let room = state.frame_size.take().map(i32::from);
             let mut next_addresses = vec![next];
             match instruction.effect {
                 // A call of the next instruction: short code that makes room for two bytes.
                 Effect::Call(target) if target == next => state.depth += RETURN_ADDRESS,
                 Effect::Call(target) if self.shared.save.contains_key(&target) => {
                     let Some(room) = room else {
-                        return Err(self.refuse(entry, address, ROOM));
+                        return Err(self.error_at(entry, address, ROOM));
                     };
                     state.depth += self.shared.save[&target] + room;
                     state.pointer = Pointer::Depth(state.depth);
@@ -160,21 +160,21 @@ impl<'a> Walk<'a> {
                 }
                 Effect::Jump(target) if self.shared.restore.contains_key(&target) => {
                     let Some(room) = room else {
-                        return Err(self.refuse(entry, address, ROOM));
+                        return Err(self.error_at(entry, address, ROOM));
                     };
                     if state.depth != self.shared.restore[&target] + room {
                         let what = "restores other registers than it saved";
-                        return Err(self.refuse(entry, address, what));
+                        return Err(self.error_at(entry, address, what));
                     }
                     returns = true;
                     next_addresses.clear();
                 }
                 Effect::Call(target) => {
-                    let called = self.function(target)?;
-                    let below = i32::from(called.depth);
-                    worst = worst.max(state.depth + RETURN_ADDRESS + below);
-                    lets_in = lets_in.or(called.lets_in);
-                    if !called.returns {
+                    let called = self.analyse_function(target)?;
+                    let callee_depth = i32::from(called.depth);
+                    worst = worst.max(state.depth + RETURN_ADDRESS + callee_depth);
+                    lets_in = lets_in.or(called.interrupts_enabled_at);
+                    if !called.can_return {
                         next_addresses.clear();
                     }
                 }
@@ -191,19 +191,23 @@ impl<'a> Walk<'a> {
                     next_addresses.clear();
                 }
                 Effect::Return => {
-                    return Err(self.refuse(entry, address, "returns with something on the stack"));
+                    return Err(self.error_at(
+                        entry,
+                        address,
+                        "returns with something on the stack",
+                    ));
                 }
                 Effect::Indirect => {
                     let what = "goes to an address that it computes";
-                    return Err(self.refuse(entry, address, what));
+                    return Err(self.error_at(entry, address, what));
                 }
                 Effect::EnableInterrupts if self.context == Context::Interrupt => {
                     lets_in = Some(address);
                 }
-                Effect::StackFromOther => return Err(self.refuse(entry, address, POINTER)),
+                Effect::StackFromOther => return Err(self.error_at(entry, address, POINTER)),
                 effect => {
                     if !state.apply(effect) {
-                        return Err(self.refuse(entry, address, POINTER));
+                        return Err(self.error_at(entry, address, POINTER));
                     }
                 }
             }
@@ -211,16 +215,16 @@ impl<'a> Walk<'a> {
             open.extend(next_addresses.into_iter().map(|address| (address, state)));
         }
         let depth = u16::try_from(worst)
-            .map_err(|_| self.refuse(entry, entry, "needs more stack than there is"))?;
+            .map_err(|_| self.error_at(entry, entry, "needs more stack than there is"))?;
         Ok(Function {
             depth,
-            returns,
-            lets_in,
+            can_return: returns,
+            interrupts_enabled_at: lets_in,
         })
     }
 
     /// Makes an error of the function at `entry`, found at the instruction at `address`.
-    pub fn refuse(&self, entry: u32, address: u32, what: &'static str) -> StackError {
+    pub fn error_at(&self, entry: u32, address: u32, what: &'static str) -> StackError {
         let is_before = |symbol: &&simulated_uno::Symbol| {
             symbol.is_function && u64::from(entry) >= symbol.address
         };
@@ -271,7 +275,7 @@ impl State {
                     _ => Pointer::Unknown,
                 }
             }
-            Effect::LoadRoom(room) => self.room = Some(room),
+            Effect::LoadFrameSize(room) => self.frame_size = Some(room),
             Effect::LosePointer => self.pointer = Pointer::Unknown,
             _ => {}
         }

@@ -31,7 +31,10 @@ fn an_angle_survives_the_conversion_to_a_pulse_and_back() {
     let pose = [120.0, 45.0, 300.0, 230.0];
     let log = frames_of(&robot, 2, |_| pose);
     let (robot, log) = (&robot, &log);
-    let first = Run { robot, log }.instants().next().expect("two frames");
+    let first = Run { robot, log }
+        .servo_frames()
+        .next()
+        .expect("two frames");
     let angles = first.angles.expect("all four have a pulse");
     for i in 0..4 {
         // Half a cycle of 62.5 ns at 10 us per degree.
@@ -107,7 +110,7 @@ fn the_steps_of_a_path_add_up_to_the_path() {
         let paths = command_paths(run, &[span(0.0, 3.0), span(3.0, 20.0)]);
         let whole = robot
             .ground()
-            .travel(run.instants().filter_map(|at| at.sweeps));
+            .travel(run.servo_frames().filter_map(|at| at.sweeps));
         let [first, second, all] = &paths[..] else {
             panic!("two commands and the whole: {paths:?}")
         };
@@ -120,7 +123,7 @@ fn the_steps_of_a_path_add_up_to_the_path() {
             (a.forward - b.forward).hypot(a.left - b.left) + (a.turn - b.turn).abs()
         };
         assert!(distance(travel(all), whole) < 1e-6, "{all:?} {whole:?}");
-        let both = followed_by(travel(first), travel(second));
+        let both = compose_travel(travel(first), travel(second));
         assert!(distance(travel(all), both) < 1e-6);
     }
 }
@@ -139,7 +142,7 @@ fn the_table_has_widths_periods_slew_and_errors() {
         .map(|n| [24_000 + 320 * n, 24_000, 24_000, 24_000])
         .collect();
     let (robot, log) = (&robot, &frames);
-    let rows = servos(Run { robot, log }, Some(&commands));
+    let rows = servo_reports(Run { robot, log }, Some(&commands));
     assert_eq!(
         (rows[0].pulses, rows[0].min_us, rows[0].max_us),
         (3, 1500.0, 1540.0)
@@ -158,7 +161,7 @@ fn the_table_has_widths_periods_slew_and_errors() {
 #[test]
 fn a_pose_near_a_singularity_is_reported() {
     let robot = robot();
-    let of = |log: &FrameLog| safety(Run { robot: &robot, log });
+    let of = |log: &FrameLog| check_safety(Run { robot: &robot, log });
     let fine = of(&gait_frames(&robot, "walk", 50));
     assert_eq!(fine.violations, 0);
     assert!(fine.least.is_some_and(|min| min.value > 0.3));

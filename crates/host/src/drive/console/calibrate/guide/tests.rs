@@ -1,7 +1,7 @@
 use super::*;
 use crate::drive::console::calibration;
-use crate::drive::console::double::{PAPER, robot};
-use lizard_core::virtual_board::Running;
+use crate::drive::console::double::{PAPER, connect_paper_robot};
+use lizard_core::virtual_board::RunningRobot;
 
 fn press<P: Read + Write>(guide: &mut Guide<'_, P>, keys: &[Key]) -> bool {
     let mut done = false;
@@ -11,15 +11,15 @@ fn press<P: Read + Write>(guide: &mut Guide<'_, P>, keys: &[Key]) -> bool {
     done
 }
 
-const PROVE: [Key; 2] = [Key::Act, Key::Yes];
+const CONFIRM_SIGN_KEYS: [Key; 2] = [Key::Act, Key::Yes];
 
 #[test]
 fn a_whole_calibration_turns_a_sign_trims_a_servo_walks_and_saves() {
-    let mut link = robot();
+    let mut link = connect_paper_robot();
     let [min, max] = calibration::ask(&mut link).expect("it answers").servos[0].limit;
     let mut guide = Guide::new(&mut link).expect("it answers");
     press(&mut guide, &[Key::Next, Key::Next]);
-    press(&mut guide, &PROVE);
+    press(&mut guide, &CONFIRM_SIGN_KEYS);
     assert!(
         guide
             .view()
@@ -27,8 +27,8 @@ fn a_whole_calibration_turns_a_sign_trims_a_servo_walks_and_saves() {
             .contains("which way does A2, front right turn")
     );
     press(&mut guide, &[Key::Act, Key::No, Key::Act, Key::Yes]);
-    press(&mut guide, &PROVE);
-    press(&mut guide, &PROVE);
+    press(&mut guide, &CONFIRM_SIGN_KEYS);
+    press(&mut guide, &CONFIRM_SIGN_KEYS);
     assert!(
         guide.view().title.contains("straighten A1"),
         "{:?}",
@@ -44,7 +44,7 @@ fn a_whole_calibration_turns_a_sign_trims_a_servo_walks_and_saves() {
     );
     assert!(guide.view().title.contains("scales and limits"));
     press(&mut guide, &[Key::Next, Key::Back, Key::Next, Key::Act]);
-    guide.idle().expect("it answers");
+    guide.read_messages().expect("it answers");
     assert!(guide.view().text[1].starts_with("It walks"));
     press(&mut guide, &[Key::Next]);
     assert!(
@@ -77,7 +77,7 @@ fn cancelling_at_any_step_restores_everything() {
     let keys: Vec<Key> = [Key::Next, Key::Next]
         .into_iter()
         .chain([Key::Act, Key::No, Key::Act, Key::Yes])
-        .chain(PROVE.repeat(3))
+        .chain(CONFIRM_SIGN_KEYS.repeat(3))
         .chain([
             Key::Turn(4.0),
             Key::Next,
@@ -89,7 +89,7 @@ fn cancelling_at_any_step_restores_everything() {
         ])
         .collect();
     for length in [1, 4, 13, 19] {
-        let mut link = robot();
+        let mut link = connect_paper_robot();
         link.command("trim 1 2.50").expect("it is accepted");
         link.command("boot walk").expect("it is accepted");
         let before = calibration::ask(&mut link).expect("it answers");
@@ -107,18 +107,18 @@ fn cancelling_at_any_step_restores_everything() {
 
 #[test]
 fn the_horn_keeps_its_pulse_when_a_sign_is_turned_round() {
-    let mut link = robot();
+    let mut link = connect_paper_robot();
     link.command("trim 1 3").expect("it is accepted");
     let mut guide = Guide::new(&mut link).expect("it answers");
     press(&mut guide, &[Key::Next, Key::Next, Key::Act, Key::No]);
-    assert_eq!(guide.now.servos[0].trim, -3.0);
+    assert_eq!(guide.active_calibration.servos[0].trim, -3.0);
     let now = calibration::ask(&mut link).expect("it answers");
     assert_eq!((now.servos[0].trim, now.servos[0].dir), (-3.0, '-'));
 }
 
 #[test]
 fn one_servo_alone_is_moved_and_only_after_the_space_bar_is_an_answer_taken() {
-    let mut link = robot();
+    let mut link = connect_paper_robot();
     let mut guide = Guide::new(&mut link).expect("it answers");
     press(&mut guide, &[Key::Next, Key::Next, Key::Yes]);
     assert!(guide.view().message.contains("space bar first"));
@@ -144,14 +144,14 @@ fn a_motion_is_noticed_before_the_robot_counts_as_standing() {
         (slow.as_str(), 0.1),
     ] {
         let robot = lizard_robot::Robot::parse(text).expect("it is right");
-        let mut running = Running::power_on(*robot.firmware());
-        running.run(200);
+        let mut running = RunningRobot::power_on(*robot.firmware());
+        running.run_frames(200);
         let before = running.status("pose");
         let [a1, a2, a3, a4] = robot.servos().map(|servo| servo.neutral);
         let line = format!("pose {:.2} {a2:.2} {a3:.2} {a4:.2}", a1 + degrees);
-        assert!(running.say(&line).starts_with("ok pose"), "{line}");
+        assert!(running.send_line(&line).starts_with("ok pose"), "{line}");
         let unseen = (0..100).take_while(|_| {
-            running.run(1);
+            running.run_frames(1);
             running.status("pose") == before
         });
         let unseen = unseen.count() as u64;
@@ -164,11 +164,11 @@ fn a_motion_is_noticed_before_the_robot_counts_as_standing() {
 
 #[test]
 fn steps_can_be_repeated_and_a_refused_trim_is_shown_and_changes_nothing() {
-    let mut link = robot();
+    let mut link = connect_paper_robot();
     let mut guide = Guide::new(&mut link).expect("it answers");
     press(&mut guide, &[Key::Back, Key::Next, Key::Next]);
     for _ in 0..4 {
-        press(&mut guide, &PROVE);
+        press(&mut guide, &CONFIRM_SIGN_KEYS);
     }
     press(&mut guide, &[Key::Turn(19.9), Key::Turn(0.5)]);
     let view = guide.view();
@@ -187,7 +187,7 @@ fn steps_can_be_repeated_and_a_refused_trim_is_shown_and_changes_nothing() {
 /// The keys from the beginning to the first scale.
 fn to_scales() -> Vec<Key> {
     let mut keys = vec![Key::Next, Key::Next];
-    keys.extend(PROVE.repeat(4));
+    keys.extend(CONFIRM_SIGN_KEYS.repeat(4));
     keys.extend([Key::Next; 4]);
     keys.push(Key::Yes);
     keys
@@ -195,7 +195,7 @@ fn to_scales() -> Vec<Key> {
 
 #[test]
 fn a_scale_is_set_where_the_crank_points_and_its_middle_stays() {
-    let mut link = robot();
+    let mut link = connect_paper_robot();
     link.command("trim 1 2.00").expect("it is accepted");
     let mut guide = Guide::new(&mut link).expect("it answers");
     press(&mut guide, &to_scales());
@@ -208,7 +208,7 @@ fn a_scale_is_set_where_the_crank_points_and_its_middle_stays() {
     press(&mut guide, &[Key::Turn(0.5)]);
     assert!(guide.view().message.contains("space bar first"));
     press(&mut guide, &[Key::Act]);
-    let by = guide.moved.expect("it was moved");
+    let by = guide.moved_degrees.expect("it was moved");
     assert!(by.abs() >= 20.0, "{by}");
     // Four corrections by half a degree of a turn of `by` degrees.
     press(&mut guide, &[Key::Turn(0.5); 4]);
@@ -221,7 +221,7 @@ fn a_scale_is_set_where_the_crank_points_and_its_middle_stays() {
 
 #[test]
 fn each_end_of_the_travel_is_moved_and_not_into_what_the_gaits_need() {
-    let mut link = robot();
+    let mut link = connect_paper_robot();
     let before = calibration::ask(&mut link).expect("it answers").servos[0];
     let mut guide = Guide::new(&mut link).expect("it answers");
     press(&mut guide, &to_scales());
@@ -230,7 +230,7 @@ fn each_end_of_the_travel_is_moved_and_not_into_what_the_gaits_need() {
     assert!(title.contains("how far may A1, front left turn"), "{title}");
     press(&mut guide, &[Key::Turn(0.5); 3]);
     press(&mut guide, &[Key::Turn(-0.1); 2]);
-    let now = guide.now.servos[0];
+    let now = guide.active_calibration.servos[0];
     assert_eq!(now.limit, [before.limit[0] + 3.0, before.limit[1] - 2.0]);
     press(&mut guide, &[Key::Turn(-0.1); 90]);
     let view = guide.view();

@@ -49,7 +49,7 @@ impl<P: Read + Write> Guide<'_, P> {
                 ("fit the horns".to_owned(), text, next)
             }
             Step::Sign(index) => {
-                let ordered = self.moved.unwrap_or(SIGN_ANGLES[0]);
+                let ordered = self.moved_degrees.unwrap_or(SIGN_ANGLES[0]);
                 let sense = if ordered < 0.0 {
                     "clockwise"
                 } else {
@@ -75,7 +75,7 @@ impl<P: Read + Write> Guide<'_, P> {
                      trim {:+.2} deg",
                     index + 1,
                     self.neutral[index],
-                    self.now.servos[index].trim
+                    self.active_calibration.servos[index].trim
                 );
                 (
                     format!("straighten {}", servo(index)),
@@ -92,7 +92,7 @@ impl<P: Read + Write> Guide<'_, P> {
                 "y: set them    Enter: leave them as they are    b: back    q: leave",
             ),
             Step::Scale(index) => {
-                let ordered = self.moved.unwrap_or(SCALE_ANGLES[0]);
+                let ordered = self.moved_degrees.unwrap_or(SCALE_ANGLES[0]);
                 let text = format!(
                     "The space bar turns A{} alone by {:.0} degrees, so that its crank\n\
                      should point to {:.2} deg. If it does not, turn it there with the\n\
@@ -101,7 +101,7 @@ impl<P: Read + Write> Guide<'_, P> {
                     index + 1,
                     ordered.abs(),
                     (self.neutral[index] + ordered).rem_euclid(360.0),
-                    self.now.servos[index].scale
+                    self.active_calibration.servos[index].scale
                 );
                 (
                     format!("how far does {} turn?", servo(index)),
@@ -110,7 +110,7 @@ impl<P: Read + Write> Guide<'_, P> {
                 )
             }
             Step::Limit(index) => {
-                let [min, max] = self.now.servos[index].limit;
+                let [min, max] = self.active_calibration.servos[index].limit;
                 let text = format!(
                     "The crank of A{} never turns beyond its limits. Where a part would\n\
                      touch another, end its travel before that angle. Left and right move the\n\
@@ -137,7 +137,7 @@ impl<P: Read + Write> Guide<'_, P> {
             }
             Step::Save => {
                 let mut text = "This will be kept in the board:\n\n".to_owned();
-                for (index, set) in self.now.servos.iter().enumerate() {
+                for (index, set) in self.active_calibration.servos.iter().enumerate() {
                     let [min, max] = set.limit;
                     text += &format!(
                         "    {:<15} sign {}  trim {:+.2}  limits {min:.2} to {max:.2}  scale {:.2}\n",
@@ -163,7 +163,7 @@ impl<P: Read + Write> Guide<'_, P> {
             ),
         };
         View {
-            title: format!("Step {} of {}: {name}", self.at + 1, STEPS.len()),
+            title: format!("Step {} of {}: {name}", self.step_index + 1, STEPS.len()),
             text: text.lines().map(str::to_owned).collect(),
             keys: keys.to_owned(),
             message: self.message.clone(),

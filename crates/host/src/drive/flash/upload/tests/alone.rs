@@ -50,7 +50,7 @@ fn after_a_cable_is_pulled_the_firmware_finds_no_robot_until_the_next_upload() {
     let (before, large) = (with_robot("own-gaits").flash, robot_image("large"));
     let code = before[..0x6e00].to_vec();
     for written in 1..=large.pages().len() {
-        let mut board = Double::with(&before);
+        let mut board = BoardDouble::with(&before);
         board.unplugged_after = Some(written);
         let cut = run_with(board, &large);
         let words = cut.error();
@@ -75,7 +75,7 @@ fn after_a_cable_is_pulled_the_firmware_finds_no_robot_until_the_next_upload() {
 fn any_one_byte_lost_while_a_robot_is_written_is_recovered() {
     let (before, paper) = (with_robot("own-gaits").flash, robot_image("paper"));
     let right = whole_image("paper");
-    let whole = run_with(Double::with(&before), &paper).board;
+    let whole = run_with(BoardDouble::with(&before), &paper).board;
     let assert_recovered = |run: &Run, at: usize| {
         assert!(run.result.is_ok(), "byte {at}: {}", run.error());
         assert!(
@@ -84,12 +84,12 @@ fn any_one_byte_lost_while_a_robot_is_written_is_recovered() {
         );
     };
     for at in (0..whole.received).step_by(17) {
-        let mut board = Double::with(&before);
+        let mut board = BoardDouble::with(&before);
         board.lost_byte_to_board = Some(at);
         assert_recovered(&run_with(board, &paper), at);
     }
     for at in (0..whole.sent).step_by(101) {
-        let mut board = Double::with(&before);
+        let mut board = BoardDouble::with(&before);
         board.lost_byte_from_board = Some(at);
         assert_recovered(&run_with(board, &paper), at);
     }
@@ -98,8 +98,8 @@ fn any_one_byte_lost_while_a_robot_is_written_is_recovered() {
 #[test]
 fn a_robot_alone_is_refused_if_the_code_on_the_board_cannot_read_it() {
     let (before, large) = (with_robot("paper").flash, robot_image("large"));
-    let refused = |change: &dyn Fn(&mut Double)| {
-        let mut board = Double::with(&before);
+    let refused = |change: &dyn Fn(&mut BoardDouble)| {
+        let mut board = BoardDouble::with(&before);
         change(&mut board);
         let before = board.flash.clone();
         let run = run_with(board, &large);
@@ -109,7 +109,7 @@ fn a_robot_alone_is_refused_if_the_code_on_the_board_cannot_read_it() {
     let reason =
         "a robot alone moves nothing: write both, without --only-robot. Nothing was written";
     assert_eq!(
-        refused(&|board| board.flash[..BOOT].fill(0xff)),
+        refused(&|board| board.flash[..BOOT_ADDRESS].fill(0xff)),
         format!("the board has no program, and {reason}")
     );
     // Another sketch, shorter than the firmware; the rest of the firmware is still there.
@@ -119,8 +119,8 @@ fn a_robot_alone_is_refused_if_the_code_on_the_board_cannot_read_it() {
     );
     assert_eq!(
         refused(&|board| {
-            board.flash[..PAGE].fill(0xff);
-            board.flash[..2].copy_from_slice(&IDLE);
+            board.flash[..PAGE_BYTES].fill(0xff);
+            board.flash[..2].copy_from_slice(&IDLE_JUMP);
         }),
         format!("the board has half a program, which does nothing, and {reason}")
     );
