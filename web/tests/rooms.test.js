@@ -110,6 +110,8 @@ test('a closed room draws nothing, even if its panels are unfolded', async () =>
   const opened = await openStanding();
   for (const panel of ['#maps', '#margins-panel', '#pulses', '#keep', '#power', '#routines', '#path-editor', '#parts']) await unfold(opened, panel);
   await opened.locator('#solid').click();
+  // The parts may come late, and fill their lists then.
+  await opened.waitForFunction(() => document.querySelector('#part').length > 10);
   await link(opened, 'board').click();
   await isOpen(opened, 'board');
   await opened.evaluate(() => window.lizard.ask('walk'));
