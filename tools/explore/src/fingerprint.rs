@@ -250,12 +250,12 @@ mod tests {
     #[derive(Clone, Copy, Debug)]
     #[allow(dead_code, reason = "read by Debug")]
     struct Stance {
-        awake: u8,
+        frames_awake: u8,
     }
 
     const MOTION: Motion = Motion {
         frames: 7,
-        stance: Stance { awake: 3 },
+        stance: Stance { frames_awake: 3 },
         speed: -5,
         list: [1, 2, 3],
     };
@@ -275,7 +275,7 @@ mod tests {
             fingerprint
         );
         assert_eq!(
-            coarse_fingerprint(&motion_with(|motion| motion.stance.awake = 5)),
+            coarse_fingerprint(&motion_with(|motion| motion.stance.frames_awake = 5)),
             fingerprint
         );
         assert_ne!(
@@ -283,7 +283,7 @@ mod tests {
             fingerprint
         );
         assert_ne!(
-            coarse_fingerprint(&motion_with(|motion| motion.stance.awake = 6)),
+            coarse_fingerprint(&motion_with(|motion| motion.stance.frames_awake = 6)),
             fingerprint
         );
         assert_ne!(

@@ -83,7 +83,7 @@ pub struct Figures {
 /// The function of the firmware that computes a frame: the control tick.
 const TICK: &str = "Control::frame";
 /// The guard's function in the ELF.
-const GUARD: &str = "clearance::hazard";
+const GUARD: &str = "clearance::find_hazard";
 /// The functions of the steps of main other than the control tick.
 const STEPS: [&str; 3] = [
     "Console::write_line",
