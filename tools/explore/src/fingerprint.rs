@@ -44,7 +44,11 @@ const RULES: &[Field] = &[
     ("Routine", "frames_left", Coarse(countdown)),
     ("Stance", "sent", Coarse(|width| width >> 11)),
     ("Stance", "pose", Coarse(|sweep| sweep >> 10)),
-    ("Stance", "frames_awake", Coarse(|frames| frames.div_ceil(5))),
+    (
+        "Stance",
+        "frames_awake",
+        Coarse(|frames| frames.div_ceil(5)),
+    ),
     ("Led", "frames", Skip),
     ("Safety", "is_lit", Skip),
     ("Safety", "handled_late_edges", Skip),
