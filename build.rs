@@ -32,8 +32,8 @@ fn main() {
     println!("cargo::rustc-link-arg-bins=-Wl,--defsym=__robot_start={START:#x}");
     let end = START + SPACE;
     println!("cargo::rustc-link-arg-bins=-Wl,--defsym=__robot_end={end:#x}");
-    // No instruction refers to the robot, to the mark of the code or to simavr's note,
-    // so the linker is told to keep them.
+    // No instruction refers to the robot's section, to the mark that identifies the firmware (src/mark.rs) or to the
+    // note for the simulator simavr, so the linker is told to keep them.
     for name in ["ROBOT", "MARK", "SIMAVR"] {
         println!("cargo::rustc-link-arg-bins=-Wl,--undefined={name}");
     }

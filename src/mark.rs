@@ -2,8 +2,8 @@
 
 use lizard_core::numbers::mark::{LENGTH, Mark};
 
-/// Read by no code of the firmware. The linker places this section first after the interrupt
-/// vectors, at [`lizard_core::numbers::mark::AT`], and a test looks for it there.
+/// Read by no code of the firmware. The linker places this section first after the interrupt vectors, at
+/// [`lizard_core::numbers::mark::ADDRESS`], and a test looks for it there.
 #[used]
 #[unsafe(no_mangle)]
 #[unsafe(link_section = ".progmem.gcc.mark")]

@@ -1,10 +1,11 @@
 //! Generator of random, valid robots without symmetry.
 //!
 //! In the paper's robot, left equals right, head equals tail and every limit of a margin is 0.3, so code that
-//! exchanges two of these numbers by mistake works all the same. In a random robot every length, servo and limit is
-//! different. A robot is written as the text of a robot.toml and read by [`Robot::parse`], which rejects invalid
-//! robots, so each result is a robot that a builder could have. Each robot has a gait that moves, and about half of
-//! the robots measure their servos' rail.
+//! exchanges two of these numbers by mistake works all the same. In a random robot the lengths, servos and limits
+//! differ, except that both sides of the chassis are equal and the leg stays a parallelogram. A robot is written as
+//! the text of a robot.toml and read by [`Robot::parse`], which rejects invalid robots, so each result is a robot
+//! that a builder could have. Each robot has a gait that moves, and about half of the robots measure their servos'
+//! rail.
 
 use std::fmt::Write;
 
@@ -205,9 +206,10 @@ impl Body {
     }
 }
 
-/// Returns a random neutral pose whose margins exceed their limits by `ROOM`, deg; `None` if no such pose was found.
+/// Returns a random neutral pose, deg, whose margins exceed their limits by at least `ROOM`; `None` if no such pose
+/// was found. The strokes are not checked.
 fn neutral(rng: &mut Rng, lizard: &Lizard, limits: &Limits) -> Option<[f64; 4]> {
-    /// Distance of every margin from its limit.
+    /// Least distance of every margin from its limit, a sine.
     const ROOM: f64 = 0.12;
     (0..200).find_map(|_| {
         let [left, right, rear_left, rear_right] =

@@ -10,8 +10,8 @@ use lizard_core::numbers::rate::Rate;
 
 use servo_pulses::cells::Byte;
 
-// The start-up code does not clear the section, and the image holds no values for it. A
-// static of Rust would have initial values in the image.
+// The start-up code does not clear the section, and the image holds no values for it. A Rust static would put initial
+// values into the image.
 global_asm!(
     ".pushsection .noinit,\"aw\",@nobits",
     ".global lizard_kept",
@@ -43,8 +43,8 @@ impl Cells for Ram {
 
 #[inline(always)]
 fn cell(index: usize) -> &'static Byte {
-    // SAFETY: a `Byte` may have any value, so whatever the RAM holds is valid; the core
-    // checks it before use, and asks for cells below `CELLS` alone.
+    // SAFETY: a `Byte` may have any value, so whatever the RAM holds is valid; the core checks it before use, and
+    // uses only indices below `CELLS`.
     unsafe { &*(&raw const KEPT).cast::<Byte>().add(index) }
 }
 

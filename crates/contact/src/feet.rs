@@ -65,8 +65,8 @@ pub struct Body {
     pub centre: Point,
 }
 
-/// Share of a robot's mass that moves with a pad: 15 g of the paper's 435 g are the foot, its coupler, and
-/// as much of crank and follower as their centres move with it.
+/// Share of a robot's mass that moves with one pad. Of the paper robot's 435 g this is 15 g: the foot, its coupler,
+/// and the share of crank and follower that corresponds to the movement of their centres.
 const LEG_SHARE: f64 = 15.0 / 435.0;
 
 impl Body {

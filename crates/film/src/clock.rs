@@ -24,16 +24,17 @@ const OFF_STEP: f64 = 0.005;
 const OFF_SIGMA: f64 = 0.01;
 /// Number of cycle beginnings that are tried.
 const BEGINNINGS: usize = 48;
-/// Smallest squared difference between measured and predicted movements that shows another gait, as a share of the
-/// sum of the squares of both.
+/// Squared difference between measured and predicted movements above which the gait counts as another one, as a share
+/// of the sum of the squares of both.
 const MAX_MISFIT_SHARE: f64 = 0.5;
-/// Smallest squared difference between the movements of two consecutive cycles that shows a change, as a share of
-/// the mean of the squares of both.
+/// Squared difference between the movements of two consecutive cycles above which they count as different, as a share
+/// of the mean of the squares of both.
 const MIN_CHANGE_SHARE: f64 = 0.15;
 /// Multiples of a cycle's duration that are tried.
 const LONGER: [u32; 3] = [2, 4, 8];
-/// Largest misfit with which another duration of a cycle is accepted, as a share of the misfit with the expected
-/// duration. A multiple of the duration must also leave less than this share of the movement itself.
+/// Largest ratio of the misfit with another cycle duration to the misfit with the expected duration at which the
+/// other duration is accepted. For a multiple of the duration, the misfit must also be below this share of the sum of
+/// squares of the measured movements.
 const MAX_MISFIT_RATIO: f64 = 0.3;
 
 /// The beginning of a cycle and the duration of a cycle, each with its standard error, s.

@@ -1,10 +1,9 @@
 //! The eight loop equations of the body and their Jacobians K and K*.
 //!
-//! The paper prints K as 8x8 and takes its determinant; there are only four active rates,
-//! so K is 8x4 and has no determinant. K* is 8x8 and block diagonal, and its determinant is
-//! the product of four block determinants. Rows are head x, y, tail x, y, left x, y, right
-//! x, y in mm, all in the chassis frame with counter-clockwise angles, which changes signs
-//! of several printed entries.
+//! The paper prints K as 8x8 and takes its determinant; there are only four active rates, so K is 8x4 and has no
+//! determinant. K* is 8x8 and block diagonal, and its determinant is the product of four block determinants. The rows
+//! are the x and y of the head, tail, left and right loops, mm. All are in the chassis frame and angles are
+//! counter-clockwise, so several entries have the opposite sign to the printed ones.
 
 use crate::end::End;
 use crate::lizard::{Lizard, Solution};
@@ -68,8 +67,7 @@ impl Solution {
         }
     }
 
-    /// K: derivatives of the loop equations by theta1, theta4, theta8, theta5,
-    /// mm per radian. 8x4.
+    /// K: derivatives of the loop equations with respect to theta1, theta4, theta8, theta5, mm per radian. 8x4.
     pub fn active_matrix(&self) -> [[f64; 4]; 8] {
         let mut k = [[0.0; 4]; 8];
         for (row, end) in ROWS.into_iter().zip(End::ALL) {
@@ -88,8 +86,8 @@ impl Solution {
         k
     }
 
-    /// K*: derivatives by theta2, theta3, theta6, theta7, phi and s left, phi
-    /// and s right, mm per radian and mm per mm. 8x8.
+    /// K*: derivatives of the loop equations with respect to theta2, theta3, theta6, theta7, phi and s left, phi and
+    /// s right, mm per radian and mm per mm. 8x8.
     pub fn passive_matrix(&self) -> [[f64; 8]; 8] {
         let mut k = [[0.0; 8]; 8];
         for (row, end) in ROWS.into_iter().zip(End::ALL) {

@@ -92,9 +92,9 @@ impl Limits {
     /// Every limit that a solved pose breaks; empty if it is safe. This is the only definition
     /// of a safe pose.
     ///
-    /// Besides margins and strokes it requires that the crank tips are not crossed
-    /// (K2 > 0): beyond d = 0 lies a second region with good margins, which the
-    /// robot cannot reach.
+    /// Besides margins and strokes it requires that the crank tips are not crossed (x of [`FiveBarPose::gap`] above
+    /// 0, the paper's K2). Poses with crossed tips may have good margins, too, but the robot cannot reach them
+    /// without passing a singularity.
     pub fn violations(&self, solution: &Solution) -> impl Iterator<Item = Violation> + use<> {
         let limits = *self;
         solution
@@ -102,8 +102,7 @@ impl Limits {
             .filter_map(move |(what, value)| limits.violation_of(what, value))
     }
 
-    /// Every limit that a five-bar breaks by itself, as the given end, for any pose of the
-    /// rest of the robot.
+    /// Every limit that the five-bar of one end breaks, whatever the pose of the rest of the robot.
     pub fn end_violations(
         &self,
         end: End,

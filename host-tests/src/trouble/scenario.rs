@@ -110,7 +110,7 @@ impl<'a> Script<'a> {
         self.steps.push(Step::Wait(ms * MS));
     }
 
-    /// Waits for a random number of cycles, less than `ms`.
+    /// Waits for a random number of cycles, for less than `ms` milliseconds.
     fn wait_up_to(&mut self, ms: u64) {
         let cycles = self.rng.u64(1..ms * MS);
         self.steps.push(Step::Wait(cycles));
@@ -280,7 +280,8 @@ impl<'a> Script<'a> {
         }
     }
 
-    /// Lets a person drive by radio, in one of four cases after noise like that of a radio module without a phone.
+    /// Lets a person drive by radio. In a quarter of these scenarios, noise as from a radio module without a phone
+    /// comes first.
     fn start_drive(&mut self) {
         if self.rng.u8(0..4) == 0 {
             self.add_noise();

@@ -22,8 +22,9 @@ const TIMEOUT_MS: u64 = 400;
 /// to five lines to find the rate of the line.
 const MAX_QUESTIONS: u32 = 12;
 
-/// The voltage of a good supply, mV; `FALLEN_MV` is that of a weak supply under load.
+/// The voltage of a good supply, mV.
 const GOOD_MV: f64 = 5_000.0;
+/// The voltage of a weak supply under load, mV.
 const FALLEN_MV: f64 = 2_400.0;
 
 /// The voltage below which the chip is held in reset, mV, including the largest hysteresis.
@@ -35,7 +36,7 @@ const BYTE: u64 = 1_389;
 /// Cycles after the start of its last pulse for which a servo counts as having pulses.
 const RECENT: u64 = 25 * CYCLES_PER_MS;
 
-/// A board in a scenario, and its record.
+/// The state while a scenario is played: the board, the person who drives it by radio, if any, and the record so far.
 struct Stage<'a> {
     robot: &'a Robot,
     uno: Uno,
@@ -323,8 +324,8 @@ fn received(bytes: &[u8], cycle: u64, robot: &Robot) -> Received {
     }
 }
 
-/// Returns the effect of a line or, if the line is no command, of its longest tail that has an effect: a reset may
-/// have cut off something that precedes the command.
+/// Returns the effect of a line or, if the line is not a command, of its longest suffix that has an effect: a reset
+/// may have cut off something that precedes the command.
 fn effect_of_tail(line: &str, robot: &Robot) -> Effect {
     let robot = robot.firmware();
     if parse(line.as_bytes(), robot).is_ok() {

@@ -35,9 +35,11 @@ fn a_count_that_carries_while_main_reads_it_is_read_as_before_or_after() {
         walk.bench.run_ms(20_000);
         let start = walk.next_frame();
         let mut seen = [0, 0];
-        // Main reads the count shortly before it writes the answer's last part, when most of the earlier parts are
-        // sent. Ticks and edges delay this read, so the delay is measured at the point of the frame at which the
-        // read is to happen.
+        // The main loop reads the count about `early` cycles before it writes the last part of the answer, which is
+        // `written` cycles after the line arrives. Interrupts for ticks and edges lengthen `written` by an amount
+        // that depends on when in the frame they come. So `written` is measured repeatedly, with the read aimed at a
+        // rising edge, until it no longer changes. Each attempt takes three frames, so that an answer is complete
+        // before the next line is sent.
         let rise = |n: u64| start + 3 * n * FRAME + SLOT_CYCLES;
         let (mut written, mut early, mut frame) = (150_000, 2_800, 0);
         loop {

@@ -1,4 +1,5 @@
-//! Tests of each servo's numbers in the core: neutral, gain, travel and pin.
+//! Tests of the numbers of each servo in the core (neutral angle, gain, travel and pin), and of the speed limit of a
+//! move.
 
 use lizard_core::numbers::units::Sweep;
 use lizard_host_tests::{Named, robots};

@@ -1,4 +1,5 @@
-//! Tests of uploads of a robot without firmware, to a board that already has the firmware.
+//! Tests of `lizard flash --only-robot`, which writes only the robot's section of flash to a board that already has
+//! the firmware.
 
 use super::*;
 
@@ -37,7 +38,7 @@ fn a_robot_alone_is_written_behind_the_firmware_and_the_trims_are_kept() {
     let end = usize::from(START) + other.section().len();
     assert!(desk.uno.flash()[..end] == firmware_of(&other)[..end]);
 
-    // Then a script writes the first robot again, whose trims are unchanged.
+    // Then the first robot is written again, with `--json`; its trims are unchanged.
     let shell = lizard_flash(&desk, &["--only-robot", "--json"]);
     let screen = self::run_to_exit(&mut desk, &shell);
     let (name, hash) = its.split_once(' ').expect("name and hash");

@@ -1,4 +1,4 @@
-//! Floors that are not level, even and clean, and the walks on them.
+//! Walks on sloping and uneven floors, on floors with unequal friction, and with a lost pad.
 //!
 //! The contact model knows only a level, even floor. Only MuJoCo predicts the effect of a tile's edge, crumbs
 //! or a slope. No gait lifts a foot, so a pad that is pushed against an edge has to climb it.
@@ -61,7 +61,7 @@ pub fn gaits(figures: &Figures, robot: &str) -> Vec<(String, Displacement)> {
             *answers.expect("figures.json has it"),
         )
     });
-    // The path of a gait without an answer of the model is not determined.
+    // If two feet pull against the other two, the contact model has no answer and the gait has no definite path.
     level
         .filter(|(_, answers)| answers.model.is_some())
         .map(|(gait, answers)| (gait, answers.mujoco))
@@ -116,8 +116,8 @@ impl Surface {
         self.is_climbed().then_some(0.85)
     }
 
-    /// Returns the least share of its turn that a gait must keep on this surface; `None` if any share is
-    /// accepted: a lost pad halves some turns, but is a fault that is to be repaired.
+    /// Returns the least share of its turn that a gait must keep on this surface; `None` if any share is accepted. A
+    /// lost pad halves some turns; that is accepted, since the user has to repair it.
     pub fn least_turn(self) -> Option<f64> {
         (self != Self::NoPad).then_some(0.75)
     }
@@ -265,7 +265,7 @@ fn min_share(surface: Surface, part: Part) -> Option<f64> {
     }
 }
 
-/// Returns a message for the distance and for the turn of a gait, if it loses more of it than a surface
+/// Returns one message for each of the gait's purposes (distance, turn) of which it loses more than the surface
 /// allows.
 pub fn excess_losses(
     surface: Surface,

@@ -34,7 +34,7 @@ pub enum Event<'a> {
     Start(Cause),
     /// RESET is pulled, or power is lost.
     Cut,
-    /// Main is stalled until this time.
+    /// The main loop is stalled until this time.
     Stalled(Time),
     /// Interrupts are blocked until this time.
     HeldUp(Time),

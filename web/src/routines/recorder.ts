@@ -7,7 +7,7 @@ import { GAITS, WORDS } from '../words';
 const PAUSE = 0.5;
 /** Shortest step, s. */
 const SHORTEST = 0.1;
-/** Error of a count of cycles since the last phase that the robot reported. */
+/** Largest error, in cycles, of a count since the last phase that the robot reported. */
 const SLACK = 0.05;
 /**
  * Added before a count is rounded down to whole cycles; below 0.5, because the count includes the move to the first
@@ -30,7 +30,7 @@ const isShort = (part: Part) => part.seconds < (isPause(part) ? PAUSE : SHORTEST
 
 export class Recorder {
   private parts: Part[] = [];
-  /** Cycles of the current gait until the time `counted`. */
+  /** Cycles of the current gait until the time `countedUntil`. */
   private cycles = 0;
   private countedUntil: number;
 
@@ -61,7 +61,8 @@ export class Recorder {
   setPhase(reported: number, at: number): void {
     this.count(at);
     const phase = this.currentGait?.reversed ? (1 - reported) % 1 : reported;
-    // The count is never too low: during the move to its first pose the robot still reports the phase of the previous gait.
+    // The count is never too low, so a phase ahead of it belongs to the previous gait: the robot reports that phase
+    // until it has reached the first pose of the new gait.
     if (phase > this.cycles + SLACK) {
       this.cycles = 0;
       return;

@@ -1,5 +1,6 @@
-// Checks that the robot's parts fit after a change of lengths, also while a length is dragged: a worker proves it. If
-// two parts come too close, they are shown in red in 3D, and the nearest lengths whose parts fit are searched.
+// Checks that the robot's parts fit after a change of lengths, also while a length is dragged. The proof runs in a
+// web worker. If two parts come too close, they are shown in red in 3D, and the page searches for the nearest lengths
+// whose parts fit.
 import type { Meeting } from '../parts/workshop';
 import { type Length, Robot } from '../robot';
 import type { Session } from '../session';
@@ -52,7 +53,8 @@ export class FitView {
     this.begin();
     this.parts.showRobot();
     const { file, toml, original } = this.session();
-    // Files of the list, which have no name while they are read, and changes made elsewhere are not checked.
+    // Not checked: a robot chosen from the list (whose file name is empty while it loads), an unchanged robot, and
+    // changes made outside the room Build.
     if (file === '' || toml === original || document.body.dataset.at !== 'room-build') this.fitting = wanted;
     const changed = [...wanted].filter(([key, value]) => this.fitting.get(key) !== value);
     if (changed.length > 0) this.schedule((work) => this.check(wanted, new Map(changed), work));
@@ -84,7 +86,7 @@ export class FitView {
     return this.session().description.lengths.every(({ key, value }) => this.fitting.get(key) === value);
   }
 
-  /** Ends the previous work. */
+  /** Cancels the scheduled or running work, and clears the message. */
   private begin(): void {
     clearTimeout(this.timer);
     this.work.isOver = true;
@@ -161,8 +163,8 @@ export class FitView {
   }
 
   /**
-   * Bisects from the last lengths that fit to the wanted ones, down to one step. If `isOpen`, the wanted lengths are
-   * tried first.
+   * Returns the lengths nearest to the wanted ones whose parts fit: bisects between the last lengths that fit and the
+   * wanted ones, to within one step. If `isOpen`, tries the wanted lengths first, since they may fit.
    */
   private async nearest(wanted: Lengths, work: Work, isOpen = false): Promise<{ lengths: Lengths; text: string }> {
     const { toml } = this.session();

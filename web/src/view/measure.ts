@@ -33,7 +33,7 @@ const NUMBERS: Record<string, Range & { value: number | null }> = {
 
 /**
  * `record` keeps the camera's pictures until the user is done, `drive` keeps them while the page drives, `play` reads
- * a film file.
+ * a film file, `compute` measures the walks in the pictures.
  */
 type Doing = 'nothing' | 'record' | 'drive' | 'play' | 'compute';
 
@@ -62,14 +62,17 @@ export class MeasureView {
   private seen = new TagTracker();
   private doing: Doing = 'nothing';
   private protocol: Protocol | null = null;
-  /** True while the robot is put back by hand, which does not belong to the film. */
+  /** True while the user puts the robot back by hand; pictures of that are not kept. */
   private isPutBack = false;
   /** True if a film file was read, whose pictures can be measured again. */
   private hasFilm = false;
   /** The gaits that the user has ticked (true) or unticked (false). */
   private readonly ticked = new Map<string, boolean>();
 
-  /** `choices` returns the gaits predicted so far; `isBarred` returns true while hands may be in the robot. */
+  /**
+   * `choices` returns the gaits predicted so far; `isBarred` returns true while the set-up is open: hands may be in
+   * the robot, which must not be driven.
+   */
   constructor(
     private readonly session: () => Session,
     private readonly choices: () => { command: string; displacement: GaitPrediction }[],
@@ -97,7 +100,7 @@ export class MeasureView {
     this.show();
   }
 
-  /** Takes another robot. */
+  /** Ends driving, and lists the gaits of a newly chosen robot. */
   showRobot({ gaits }: Description): void {
     this.stop('another robot was chosen');
     const moving = gaits.filter(({ moves }) => moves).map(({ command }) => command);
@@ -125,7 +128,7 @@ export class MeasureView {
     this.protocol?.stop(why);
   }
 
-  /** Takes another link; by default the page drives a real robot. */
+  /** Ends driving after a change of the link, and preselects the page as the driver of a real robot. */
   link(isReal: boolean): void {
     this.protocol?.end('the link to the robot has changed');
     this.driver.value = isReal ? 'page' : 'other';

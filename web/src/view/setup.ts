@@ -50,8 +50,8 @@ export class Setup implements Tools {
   private lastLink: Link | null = null;
   private wasReal = false;
   /**
-   * True from the loss of a board until the next connection: an action that began on it must not continue on another
-   * board.
+   * True from the loss of a board until the next connection, or until the user goes on without it: an action that
+   * began on the lost board must not continue on another one.
    */
   private isLost = false;
   /** True if the board said that it has never saved a calibration. */
@@ -105,7 +105,7 @@ export class Setup implements Tools {
   /** Opens the step that a newly connected board needs first, if it needs one. */
   openNeededStep(): void {
     const { banner, hasThisRobot, link } = this.session;
-    // A radio cannot write firmware, and the owner of a module has had a first walk.
+    // Firmware cannot be written by radio, and a user who has added a radio module has been through these steps.
     if (link.kind === 'radio' && this.box.hidden) return;
     const step = banner === null || (banner !== 'unknown' && !hasThisRobot) ? firmware : this.isNew ? horns : null;
     if (this.box.hidden) {
@@ -122,7 +122,7 @@ export class Setup implements Tools {
     if (line.startsWith(NOTHING_SAVED)) this.isNew = true;
   }
 
-  /** Takes another link, which ends the current action. */
+  /** Takes the session's link. If it is another one, ends the current action. */
   link(): void {
     const { link, isReal } = this.session;
     if (link === this.lastLink) return this.update();

@@ -179,7 +179,7 @@ pub struct Description {
     pub margins: Vec<MarginEntry>,
     /// Least and greatest travel of the sliders, mm from nominal.
     pub stroke: (f64, f64),
-    /// Voltages of the board's supply below which it slows down, stops and rests, V.
+    /// Voltages of the board's supply below which the robot slows down, stops, and rests, V.
     pub supply: [f64; 3],
     /// Pace limit below the first of these voltages, percent of a gait's own pace.
     pub slow_pace: u8,

@@ -68,7 +68,7 @@ impl<'a> FiveBar<'a> {
     #[inline(never)]
     pub fn margins(&self, left: &Direction, right: &Direction) -> EndMargins {
         let bars = &self.bars;
-        // Half the step of the bars, so that the distance of the crank tips fits and the shift is by whole
+        // In units of two steps of the bars: the vector then fits into 16 bits, and each product is shifted by whole
         // bytes.
         let tips = TipVector {
             along: (bars.base >> 1)
@@ -101,7 +101,7 @@ impl<'a> Robot<'a> {
     }
 }
 
-/// The vector from the left crank tip to the right one, in half steps.
+/// The vector from the left crank tip to the right one, in units of two steps of the bars.
 #[derive(Clone, Copy)]
 struct TipVector {
     along: i16,

@@ -5,7 +5,7 @@ use crate::numbers::gaits::{Gait, GaitId};
 use crate::numbers::pose::Pose;
 use crate::numbers::robot::Robot;
 
-/// The robot's activity; set already while the robot still moves to it.
+/// The robot's activity. During the move that leads to an activity, it already has that activity's value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Activity {
     /// A gait (`stand` is one).
@@ -27,7 +27,8 @@ pub enum Target {
     Pose(Pose) = 1,
     /// A gait, reached by a move to its first pose.
     Gait(GaitId),
-    /// The standstill that ends a gait whose count is complete, in whatever pose that is.
+    /// The stop of a gait or a move, in whatever pose the robot has after braking; also the end of a gait that has
+    /// run for the requested number of cycles.
     End,
 }
 

@@ -49,9 +49,9 @@ lizard_avr::plain! {
     pub struct Coupling {
         left: i16,
         right: i16,
-        /// `R` in the steps of `s`, each a quarter of a squared step of the bars.
+        /// `R` in the units of `s`: four squared steps of the bars.
         reach_sq: u32,
-        /// `N` in the steps of `s`.
+        /// `N` in the units of `s`.
         least_sq: u32,
         /// Leading zeros of `reach_sq`.
         reach_zeros: u16,
@@ -93,7 +93,7 @@ impl Coupling {
         self.right
     }
 
-    /// True if [`Couplers::differ_much`] for these couplers.
+    /// Implements [`Couplers::differ_much`].
     pub const fn differs_much(&self) -> bool {
         2 * self.least_sq > self.reach_sq >> OCTAVES
     }
@@ -122,9 +122,9 @@ impl<'a> Couplers<'a> {
         Self { lengths, tables }
     }
 
-    /// True for couplers whose difference alone keeps the crank tips so far apart that the margins are known up to
-    /// the folded position: near it the rise is read from the table of folded couplers. For other couplers,
-    /// [`Couplers::at`] returns `None` near the folded position.
+    /// True if the lengths differ so much that the table over `s` begins below `2 N`. The table of folded couplers
+    /// then gives the rise from `2 N` down to the folded position, `s = N`. For other couplers, [`Couplers::at`]
+    /// returns `None` near the folded position.
     pub const fn differ_much(left: i16, right: i16) -> bool {
         Coupling::new(left, right).differs_much()
     }
@@ -135,7 +135,7 @@ impl<'a> Couplers<'a> {
         is_near_stretched(reach_sq(left, right), tips_sq)
     }
 
-    /// The lean at a squared distance of the crank tips, in quarters of a squared step of the bars. `None` if the
+    /// The lean at a squared distance of the crank tips, in units of four squared steps of the bars. `None` if the
     /// couplers do not close the loop. Also `None` near the distances at which the loop just closes, and near
     /// coinciding crank tips, where the tables have no value; the type-2 margin is then below a tenth, the smallest
     /// limit that a robot may have.
@@ -208,7 +208,7 @@ pub fn folded(left: i16, right: i16) -> Table {
 /// The magnitude of the skew over `s`; made by a host.
 pub fn skew(left: i16, right: i16) -> Table {
     let reach_sq = reach_sq(left, right);
-    // a^2 - b^2 in the steps of `s`, each a quarter of a squared step of the bars.
+    // a^2 - b^2 in the units of `s`: four squared steps of the bars.
     let difference = (i64::from(left).pow(2) - i64::from(right).pow(2)).unsigned_abs() / 4;
     core::array::from_fn(|index| {
         let tips_sq = argument(reach_sq, index);
@@ -230,14 +230,14 @@ fn rise_q10(reach_sq: u32, least_sq: u32, tips_sq: u64, round: u128) -> i16 {
     rise.min(0x7fff) as i16
 }
 
-/// Computes `R` in the steps of `s`, each a quarter of a squared step of the bars.
+/// Computes `R` in the units of `s`: four squared steps of the bars.
 const fn reach_sq(left: i16, right: i16) -> u32 {
     let sum = left as u32 + right as u32;
     // A quarter of the squared sum, rounded down; for equal couplers exactly the squared coupler.
     sum / 2 * (sum / 2) + if sum % 2 == 1 { sum / 2 } else { 0 }
 }
 
-/// Computes `N` in the steps of `s`.
+/// Computes `N` in the units of `s`.
 const fn folded_sq(left: i16, right: i16) -> u32 {
     let difference = left.abs_diff(right) as u32;
     difference * difference / 4

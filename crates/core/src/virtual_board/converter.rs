@@ -45,7 +45,8 @@ impl Converter {
         Self::new(self.actual, self.has_rail)
     }
 
-    /// Returns the last complete reading, or the default before the first one, and starts the next measurement.
+    /// Advances by a frame. Returns the latest value of each voltage, or the default until every voltage has been
+    /// measured once.
     pub(super) fn next(&mut self) -> Reading {
         match self.frames {
             1 => {
@@ -68,7 +69,8 @@ impl Converter {
     }
 }
 
-/// The converter's reading of the supply voltages `board` and `rail`, mV; the rail is measured through its divider.
+/// Returns the converter's reading if the supplies have the voltages `board` and `rail`, in mV. The rail is measured
+/// through its divider.
 pub fn compute_reading(supplies: &Supplies, board: u32, rail: u32) -> Reading {
     let board = u64::from(board);
     let parts = |mv: u64| ((1024 * mv + board / 2) / board.max(1)).min(1023) as u16;

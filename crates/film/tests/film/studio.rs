@@ -12,7 +12,7 @@ pub const TRUE_SIZE: Setup = Setup {
     height: 83.0,
 };
 
-/// A studio with a known camera and few pixels, whose picture the sheet fills.
+/// A studio with a known camera and few pixels; the sheet fills its picture.
 pub fn small(seed: u64, tilt: f64) -> Studio {
     let mut studio = Studio::random(&mut Rng::with_seed(seed));
     (studio.size, studio.focal) = ([640, 360], 1.0);

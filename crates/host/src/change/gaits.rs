@@ -16,13 +16,12 @@ use crate::{Failure, RobotFile};
 
 /// Check every gait of robot.toml and predict how far it walks.
 ///
-/// Prints for each gait: the time of a cycle, its fastest frame, the error of its table
-/// over all 65536 phases, the smallest margins and the slider travel over every sample,
-/// and the displacement of one cycle by the contact model. A dash means that two feet
-/// pull against two, so the model cannot decide. Of each routine it prints how long one
-/// round takes and how far it leads, with the changes between its gaits. If a gait breaks a limit, the program
-/// names the gait, its phase, the margin, its value and the limit, and ends with exit
-/// code 2. It does the same for any other mistake in the file.
+/// Prints for each gait: the time of a cycle, its fastest frame, the error of its table over all 65536 phases, the
+/// smallest margins and the slider travel over every sample, and the displacement of one cycle by the contact model.
+/// A dash means that two feet pull against two, so the model cannot decide. For each routine it prints how long one
+/// round takes and how far the robot gets in it, including the transitions between its gaits. If a gait breaks a
+/// limit, the program names the gait, its phase, the margin, its value and the limit, and ends with exit code 2. It
+/// does the same for any other mistake in the file.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   lizard gaits
@@ -32,7 +31,7 @@ use crate::{Failure, RobotFile};
   lizard gaits --trace walk > walk.csv
   lizard gaits --trace walk | lizard pose")]
 pub struct Args {
-    /// Print one JSON object a line, one for each gait and each routine
+    /// Print one JSON object per line, one for each gait and each routine
     #[arg(long)]
     json: bool,
     /// Print instead the servo angles of one gait over a cycle as CSV, with the header

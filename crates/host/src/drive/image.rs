@@ -1,4 +1,4 @@
-//! `lizard flash image`: the firmware with a robot as a file, for any program that writes boards.
+//! `lizard flash image`: writes the firmware and a robot to a file, for any program that writes boards.
 //!
 //! `lizard flash` writes a robot to a board. A user with another programmer, or with the board at
 //! another machine, needs a file.
@@ -14,7 +14,7 @@ use crate::drive::flash::file;
 use crate::shared::{files, json};
 use crate::{Failure, RobotFile};
 
-/// Make the image of your robot as a file of Intel HEX, without a compiler
+/// Write the firmware and your robot to an Intel HEX file, without a compiler
 ///
 /// The image is the firmware inside this program with the robot of robot.toml behind it, as `lizard
 /// flash` writes it. avrdude and other programs can write it, too.

@@ -1,4 +1,4 @@
-//! `lizard measure sheet`: the sheet of tags, to be printed in true size.
+//! `lizard measure sheet`: the sheet of tags, to be printed at actual size.
 
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -20,8 +20,8 @@ enum PaperName {
 
 /// Write the sheet of tags to print for `lizard measure`, as PDF
 ///
-/// Two strips for the floor and a card for the robot's deck, in true size on one page, with how to lay and
-/// glue them, and a line of 100 mm that shows whether the printer kept the size.
+/// One page, at actual size: two strips for the floor, a card for the robot's deck, instructions for laying and
+/// gluing them, and a line of 100 mm that shows whether the printer kept the size.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Example:
   lizard measure sheet --paper letter")]

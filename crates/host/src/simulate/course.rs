@@ -15,7 +15,8 @@ use crate::{Failure, RobotFile};
 /// Records three cycles of a gait on the simulated UNO, with the firmware of an ELF or the one inside this program.
 ///
 /// # Errors
-/// Fails for an unknown gait, a firmware that is missing or has another robot, or a simulation that fails.
+/// Fails if the gait is unknown, if the firmware is missing or was built for another robot, or if the simulation
+/// fails.
 pub fn course(
     robot: &Robot,
     file: &RobotFile,

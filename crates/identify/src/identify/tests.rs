@@ -1,5 +1,4 @@
-//! Tests of the choice of the keys and of their errors, on three hundred robots with a smooth model that takes no
-//! time.
+//! Tests of the choice of the keys and of their errors. A formula takes the place of the simulated robot.
 
 use fastrand::Rng;
 
@@ -36,12 +35,13 @@ fn deviate(rng: &mut Rng) -> f64 {
     (0..12).map(|_| rng.f64() - 0.5).sum()
 }
 
-/// The key values of the file.
+/// The values from which each fit starts, in place of those of a robot.toml: zero, or the least possible value.
 fn start() -> Values {
     std::array::from_fn(|i| KEYS[i].least.max(0.0))
 }
 
-/// The movements of a robot, measured with errors through a card that is not exactly in its place.
+/// The movements of a robot with random measurement errors, as a camera sees them from a tag card that may be glued
+/// on slightly out of place.
 fn measured(values: &Values, card: Card, rng: &mut Rng) -> Vec<MeasuredMovement> {
     let way = |travel: Travel| {
         let seen = card.card_travel(travel);
@@ -207,8 +207,7 @@ fn a_play_below_zero_is_not_written() {
         values[PLAY] = play;
         model(&values)
     };
-    // These movements differ from those of the file's robot as much as a play of 0.5 deg would change them, but in
-    // the opposite direction.
+    // Shifts the movements by the opposite of what a play of 0.5 deg would do, so that the fit asks for -0.5 deg.
     for ((way, at), play) in ways.iter_mut().zip(with_play(0.0)).zip(with_play(0.5)) {
         way.mean[0] -= play.forward - at.forward;
         way.mean[1] -= play.left - at.left;

@@ -114,6 +114,7 @@ fn add_plate(builder: &mut Builder) {
     let body = Shape::rectangle(Vector::default(), plate.half * 2.0, plate.corner);
     let mut add = vec![body];
     let mut through = cut.clone();
+    // Bars that end at the same point differ by 0.01 mm in half their width, so that no two ends are the same arc.
     for (leg, [between, driven, idle]) in layout.legs.iter().zip(plate.arms) {
         let bar = |[from, to]: [Vector; 2], half: f64| Shape::bar(from, to, half);
         add.push(bar(between, plate.arm));
@@ -145,6 +146,7 @@ pub fn corner(builder: &Builder, servo: usize) -> Vec<Prism> {
     let middle = case_middle(builder, servo);
     let mut add = vec![seat(builder, servo, AROUND)];
     let [between, driven, idle] = plate.arms[servo];
+    // As in the plate, bars that end at the same point differ by 0.01 mm.
     add.push(Shape::bar(between[0], between[1], plate.arm));
     for [from, to] in [driven, idle] {
         add.push(Shape::bar(from, to, plate.arm - 0.01));

@@ -53,6 +53,7 @@ fn add_crank(builder: &mut Builder, servo: usize) {
     let (stack, parts) = (builder.stack, builder.parts);
     let LegPlan { anchor, joint, .. } = builder.layout.legs[servo];
     let (pivot, half) = (Vector::default(), builder.half_bar());
+    // Bars that end at the same point differ by 0.01 mm in half their width, so that no two ends are the same arc.
     let add = [
         Shape::disc(pivot, half + 1.0),
         Shape::bar(pivot, joint, half),
@@ -133,6 +134,7 @@ fn add_foot(builder: &mut Builder, servo: usize) {
     let outward = clamps[0] - at;
     let toward = outward * (1.0 / outward.length());
     let root = at + toward * (leaf_length(builder.parts.bar) + COLUMN);
+    // As in the crank, bars that end at the same point differ by 0.01 mm.
     let column = vec![
         Shape::bar(clamps[0], clamps[1], COLUMN),
         Shape::bar(clamps[0], root, COLUMN - 0.01),

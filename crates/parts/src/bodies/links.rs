@@ -84,6 +84,7 @@ fn add_link(builder: &mut Builder, servo: usize) {
     let round = parts.horn.hub / 2.0 + 2.0 * parts.fit + 1.5 * parts.wall;
     // Without this brace the link would break in the corner between crank and arm.
     let brace = Shape::hull(&[hub, tip * 0.45, side * 0.45], 0.6 * half);
+    // Bars that end at the same point differ by 0.01 mm in half their width, so that no two ends are the same arc.
     let add = vec![
         Shape::disc(hub, round),
         Shape::bar(hub, tip, half),

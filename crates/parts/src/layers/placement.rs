@@ -18,7 +18,7 @@ impl Placement {
         x_axis: Vector::new(1.0, 0.0),
     };
 
-    /// Converts a point from the chassis frame to the body's frame, mm.
+    /// Converts a point from the frame in which this placement is given to the body's frame, mm.
     pub fn unmap(&self, point: Vector) -> Vector {
         let from = point - self.origin;
         Vector::new(from.dot(self.x_axis), self.x_axis.cross(from))
@@ -26,7 +26,7 @@ impl Placement {
 }
 
 impl<T: Real> Placement<T> {
-    /// Converts a point from the body's frame to the chassis frame, mm.
+    /// Converts a point from the body's frame to the frame in which this placement is given, mm.
     pub fn map(&self, point: Vector) -> Vector<T> {
         self.origin + self.x_axis * point.x + self.x_axis.rotated_left() * point.y
     }

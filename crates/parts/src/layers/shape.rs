@@ -1,10 +1,9 @@
 //! Flat convex shapes with round corners. All parts are made of them.
 //!
-//! A bar is a line that has a width; a hub is a point that has one; a plate is a polygon
-//! whose corners are rounded. Each of them is the convex hull of a few points, grown by a
-//! radius. The distance of two such shapes is the distance of two polygons, less both
-//! radii, which suits a collision test. Their outlines are lines and arcs, which suits a
-//! drawing.
+//! A bar is a line that has a width; a hub is a point that has one; a plate is a polygon whose corners are rounded.
+//! Each of them is the convex hull of a few points, grown by a radius. The distance between two such shapes is the
+//! distance between their polygons, less both radii, which suits a collision test. Their outlines are lines and arcs,
+//! which suits a drawing.
 
 use lizard_kinematics::Vector;
 
@@ -185,8 +184,9 @@ impl Shape {
         })
     }
 
-    /// The largest distance of the other polygon beyond a line along one of this polygon's
-    /// sides; minus infinity for a disc, which has no sides.
+    /// The separation along this polygon's side normals (separating-axis test): for each side, the other polygon's
+    /// least distance in front of the side's line, and of these the largest. Minus infinity for a disc, which has no
+    /// sides.
     fn max_side_separation(&self, other: &Self) -> f64 {
         let beyond = self.side_lines().map(|(from, out)| {
             let depths = other.points.iter().map(|&point| out.dot(point - from));

@@ -41,7 +41,7 @@ fn assembly(name: &str, more: &str) -> Assembly {
     Assembly::new(&robot_with(name, more))
 }
 
-/// The assembly of a file of robots/ with slotted struts, the wider kind.
+/// The assembly of a file of robots/, with slotted struts, which are wider than the default.
 fn slotted(name: &str, more: &str) -> Assembly {
     assembly(name, &format!("{STRUT}\n{more}"))
 }

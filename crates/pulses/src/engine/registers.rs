@@ -53,7 +53,8 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         self.lower();
     }
 
-    /// Drives pins that are known at compile time low, makes them outputs, and starts as [`Engine::start`] does.
+    /// Starts an engine whose pins are known at compile time: drives them low, makes them outputs, and calls
+    /// [`Engine::start`].
     ///
     /// # Safety
     /// See [`Engine::start`].
@@ -71,9 +72,8 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         for [address, mask] in &self.pins[..SERVOS] {
             let port = port(address.get());
             let mask = mask.get();
-            // SAFETY: PORT is an I/O register, and DDR the one just below it, for a
-            // `Pin` knows no other addresses. No handler writes one of them before a
-            // width has been submitted.
+            // SAFETY: a `Pin` holds only addresses of PORT registers, and DDR is the register just below PORT. No
+            // handler writes one of them before a width has been submitted.
             unsafe {
                 let ddr = port.sub(1);
                 port.write_volatile(port.read_volatile() & !mask);
@@ -105,8 +105,8 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         }
     }
 
-    /// The number of edges that were late because an interrupt was delayed for longer than [`LEAD`] allows. It
-    /// stays at 65535.
+    /// The number of edges that were late because an interrupt was delayed for longer than [`LEAD`] allows. The count
+    /// saturates at 65535.
     #[inline(always)]
     pub fn late(&self) -> u16 {
         self.late.read()
@@ -141,8 +141,8 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         // interrupt each other.
         unsafe {
             set(OCR1B, self.fall.get() - u16::from(LEAD));
-            // If interrupts were off for very long, a match of the previous slot, or of this slot with the old
-            // count, is pending here and would close this slot at once.
+            // If interrupts were off for very long, a match B from the previous slot, or one in this slot with the
+            // previous value of OCR1B, is pending here and would close this slot at once.
             set(TIFR1, B);
         }
     }

@@ -1,4 +1,4 @@
-//! The consequences of a broken condition for the robot, in words without keys and figures.
+//! The consequences of a broken condition for the robot, in plain words: no names of robot.toml keys and no numbers.
 
 use lizard_kinematics::{Check, End, Part, Side};
 

@@ -55,8 +55,8 @@ fn servos_have_their_dead_band_and_their_rate_and_ideal_ones_neither() {
     };
     // 4 us are less than half of the servo's dead band of 10 us.
     near(turned(&mut page, 64), [0.0, 0.4]);
-    // A step of 20 deg: less than 10 in the first 20 ms at 500 deg/s, as the rotor must spin up;
-    // then to within the dead band and the error at which the servo carries its pad.
+    // A step of 20 deg: less than 10 in the first 20 ms at 500 deg/s, as the rotor must spin up; then it stays within
+    // the dead band plus the error that the servo needs to hold its pad against friction.
     let (first, _) = turned(&mut page, 3200);
     assert!((1.0..10.0).contains(&first), "{first}");
     for _ in 0..20 {
@@ -67,6 +67,7 @@ fn servos_have_their_dead_band_and_their_rate_and_ideal_ones_neither() {
     assert!((last + error - 20.0).abs() < 1e-9);
     page.set_servos("ideal");
     near(turned(&mut page, 3200), [20.0, 0.0]);
+    // An unknown model changes nothing: the servos stay ideal.
     page.set_servos("better");
     near(turned(&mut page, 0), [0.0, 0.0]);
 }
@@ -139,7 +140,7 @@ fn servos_with_a_dead_band_are_predicted_to_lose_it() {
     for (copy, own) in copy.into_iter().zip(own) {
         assert!(copy > 1.3 * own, "a weaker servo uses more: {copy} {own}");
     }
-    // docs/gaits.md has these two values, for half and full pace, and the value for 4 V below.
+    // docs/gaits.md lists these two values, for half and full pace, and also the value for 4 V that is checked below.
     assert!(
         (own[9] - 0.45).abs() < 0.005 && (own[19] - 0.72).abs() < 0.005,
         "{own:?}"

@@ -1,4 +1,4 @@
-//! Resets between any two stores, memories of any content, and every cause.
+//! Tests of resets between any two stores, of random RAM contents, and of every reset cause.
 
 use std::cell::{Cell, RefCell};
 use std::vec::Vec;
@@ -188,6 +188,7 @@ proptest! {
         prop_assert_eq!((restart.count, restart.stance_before), (0, None));
         prop_assert_eq!(begin(&ram, Some(Cause::External)).stance_before, None);
         bytes[MARK_CELL] = POWERED_MARK;
+        // Neither RUNNING nor HUNG.
         bytes[STATE_CELL] = 0x5b;
         prop_assert_eq!(begin(&Ram::of(bytes), reported).stance_before, None);
     }

@@ -1,4 +1,5 @@
-//! The walk over all pairs of a robot's positions, in pieces.
+//! Compares the guard with floating point at the pairs of servo positions of every end and side, and divides that
+//! work into pieces.
 
 use std::sync::OnceLock;
 
@@ -11,10 +12,10 @@ use super::rows::{CUTS, PairSample};
 use super::side_walk::{SideComparison, compare_leg};
 use super::tally::{Finding, MARGIN_BAND, Tally};
 
-/// Number of pieces of the whole walk: [`CUTS`] for each end and each side.
+/// Number of pieces of the whole check: [`CUTS`] for each end and each side.
 pub const PIECES: usize = 4 * CUTS;
 
-/// A walk over a robot's pairs of positions that checks a guard; holds the values that all pieces share.
+/// The check of a robot's guard over pairs of servo positions; holds the values that all pieces share.
 pub struct Walk<'a> {
     robot: &'a Robot,
     guard: &'a CoreRobot,
@@ -25,7 +26,7 @@ pub struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
-    /// Makes a walk over a sample of the pairs.
+    /// Makes a check over a sample of the pairs.
     pub fn new(robot: &'a Robot, guard: &'a CoreRobot, share: PairSample) -> Self {
         Self {
             robot,
@@ -89,7 +90,8 @@ pub fn findings(robot: &Robot, guard: &CoreRobot, pieces: Vec<Tally>) -> Vec<Fin
     findings
 }
 
-/// The wider margin band of the robot's two ends, a sine; at least [`MARGIN_BAND`].
+/// The distance from a margin's limit, a sine, within which the guard may decide differently from floating point: the
+/// larger of both ends' values, and at least [`MARGIN_BAND`].
 pub fn widest_band(robot: &Robot) -> f64 {
     End::ALL
         .map(|end| bands(robot, end)[0])
@@ -97,7 +99,7 @@ pub fn widest_band(robot: &Robot) -> f64 {
         .fold(MARGIN_BAND, f64::max)
 }
 
-/// The number of rows to check: positions of the first servo of each end and side.
+/// The number of rows to check: one for each position of the first servo of each end and side.
 pub fn rows(guard: &CoreRobot) -> u64 {
     let positions = |servo: usize| {
         let calibration = guard.calibration()[servo];

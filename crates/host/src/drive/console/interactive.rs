@@ -22,18 +22,17 @@ use crate::drive::clock::Clock;
 
 /// Dialogue to the robot
 ///
-/// Finds the board, waits for it to start, and passes lines to it; `help` lists its
-/// commands. Esc stops the robot at once: `stop` goes ahead of whatever waits, and is sent
-/// until it is answered. The arrow keys bring back older lines; Ctrl-C, Ctrl-D or `quit`
-/// end the program. The line at the bottom shows gait, pose, smallest margin, supply and faults.
-/// For that the program asks the robot for its `status` twice a second, so `boot` does not
-/// act. While you drive, `deadman` is set: a robot out of reach stops by itself. If standard input is a file or a pipe, its lines are sent one
-/// after another, and the exit code is 1 if the robot refuses one; by radio, the robot stops
-/// when they have ended.
+/// Finds the board, waits for it to start, and passes lines to it; `help` lists its commands. Esc stops the robot at
+/// once: `stop` goes ahead of whatever waits, and is sent until it is answered. The arrow keys bring back older
+/// lines; Ctrl-C, Ctrl-D or `quit` end the program. The line at the bottom shows gait, pose, smallest margin, supply
+/// and faults. For that the program asks the robot for its `status` twice a second, so `boot` does not act. While you
+/// drive, `deadman` is set: a robot out of reach stops by itself. If standard input is a file or a pipe, its lines
+/// are sent one after another, and the exit code is 1 if the robot refuses one; by radio, the robot stops when they
+/// have ended.
 #[derive(clap::Args, Debug)]
 pub struct ConsoleArgs {
-    /// A new file that records the session: commands, answers, the pose of every frame, and
-    /// faults, as a JSON object a line, each with its time in ms; `lizard console replay` draws it
+    /// A new file that records the session: commands, answers, the pose of every frame, and faults, as one JSON
+    /// object per line, each with its time in ms; `lizard console replay` draws it
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
     #[command(flatten)]

@@ -1,9 +1,9 @@
 //! The protocol of the boot loaders of UNO and Nano: STK500, version 1.
 //!
-//! After a reset by its button or by USB's DTR line, the chip starts in the boot loader. It
-//! blinks, then listens for about a second, and starts the program in flash if no command arrives.
-//! One or a few bytes that it does not understand make it start that program at once; then only another reset
-//! starts the boot loader again. Commands and answers have no checksums, so written pages must be read back.
+//! After a reset by its button or by the DTR line of its USB serial converter, the chip starts in the boot loader. It
+//! blinks, then listens for about a second, and starts the program in flash if no command arrives. One or a few bytes
+//! that it does not understand make it start that program at once; then only another reset starts the boot loader
+//! again. Commands and answers have no checksums, so written pages must be read back.
 //!
 //! There are two such boot loaders. Only the speed at which a board answers shows which one it has: see [`Kind`].
 //!

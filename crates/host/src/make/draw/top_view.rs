@@ -16,7 +16,7 @@ const MARGIN: (f64, f64) = (80.0, 28.0);
 pub(super) const SKIN_REACH: f64 = 30.0;
 /// Distance from the skin to its label, mm.
 pub(super) const NAME_BEYOND: f64 = 6.0;
-/// Half the length of the plate that the skin's coordinates fit, mm.
+/// Half the length of the paper robot's plate, for which the skin's coordinates are given, mm.
 const SKIN_LENGTH: f64 = 80.4;
 
 const SKIN: &str = "#e3ecdc";

@@ -52,8 +52,8 @@ impl Script {
     /// Shortest length that a built-in script may have, ms.
     pub const SHORTEST_MS: u64 = STAND_MS + CLOSE_MS + 1000;
 
-    /// A script of `ms` milliseconds, at least [`Self::SHORTEST_MS`]: boot, the
-    /// gaits one after the other, stop, status, rest.
+    /// A script of `ms` milliseconds, which must be at least [`Self::SHORTEST_MS`]: a second of standing, then the
+    /// gaits one after the other, `stop`, `status` and `rest`.
     pub fn from_gaits(gaits: &[&str], ms: u64) -> Self {
         let time = ms - STAND_MS - CLOSE_MS;
         // The last gait gets four parts of the time, each earlier gait five.

@@ -49,7 +49,7 @@ pub struct Args {
     /// The model of the servos
     #[arg(long, value_enum, default_value_t)]
     servo: ServoArg,
-    /// Print one JSON object a line, one for each command
+    /// Print one JSON object per line, one for each command
     #[arg(long)]
     json: bool,
     /// Then walk each gait N more times with random friction, loads, mounting, hips,

@@ -49,9 +49,9 @@ impl Writer<'_> {
         }
     }
 
-    /// Writes a pad's contact shape; viewers hide it and show the part. The pad has friction against
-    /// sliding only, not against turning or rolling. `priority` makes the pad's friction count on the
-    /// floor and on its blocks.
+    /// Writes a pad's contact shapes. Viewers hide them (group 3) and show the printed part instead. The pad has
+    /// friction against sliding only, not against turning or rolling. `priority` makes the pad's friction count on
+    /// the floor and on its blocks.
     pub(super) fn write_pad(&mut self, servo: usize) {
         let pad = self.assembly.robot().parts().pad;
         let [x, y, middle] = self.pad_middle(servo);

@@ -6,7 +6,8 @@ use lizard_core::numbers::units::TURN;
 use lizard_kinematics::Vector;
 
 /// Largest number of successive divisions of a cell in four before it counts as not proven. A bound over a cell is
-/// too wide by about the cell's size, so each division certifies cells at half the distance from a limit.
+/// too wide by an amount about proportional to the cell's size, so each division proves cells that lie half as far
+/// from a limit.
 const DIVISIONS: u32 = 4;
 
 /// Allowance for floating-point errors, both as a sine and in mm; far larger than these errors are.
@@ -26,7 +27,7 @@ pub(super) struct Cell(pub [Span; 2]);
 /// The result of judging a condition over a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Verdict {
-    /// The firmware's integers keep the condition at every pose.
+    /// The condition, as the firmware computes it in integers, is true at every pose of the cell.
     Kept,
     /// The centre of the cell breaks the condition.
     Broken,

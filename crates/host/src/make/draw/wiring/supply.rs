@@ -13,11 +13,12 @@ type Point = (f64, f64);
 
 /// The battery's left edge.
 const BATTERY: f64 = 560.0;
-/// Height of the battery's plus contact, and of the fuse, the switch and the single way after it.
+/// Vertical position of the battery's plus contact, and of the fuse, the switch and the single way (terminal) after
+/// them. Positions grow downwards.
 const PLUS: f64 = 40.0;
-/// Height of the battery's minus contact.
+/// Vertical position of the battery's minus contact.
 const MINUS: f64 = 112.0;
-/// Heights of the contacts of the battery's balance plug.
+/// Vertical positions of the contacts of the battery's balance plug.
 const BALANCE: [f64; 3] = [62.0, 76.0, 90.0];
 /// The left edge of the battery's cells.
 const CELLS: f64 = 600.0;
@@ -33,16 +34,16 @@ const WAY: [f64; 2] = [286.0, 322.0];
 const WIRE_OFFSET: f64 = 5.0;
 /// The converter's left and right edges.
 const CONVERTER: [f64; 2] = [130.0, 235.0];
-/// Height of the contact IN+ of the converter.
+/// Vertical position of the contact IN+ of the converter.
 const CONVERTER_IN_PLUS: f64 = PLUS - WIRE_OFFSET;
-/// Height of the contacts IN- and OUT- of the converter.
+/// Vertical position of the contacts IN- and OUT- of the converter.
 const CONVERTER_MINUS: f64 = 104.0;
 /// The capacitor's horizontal position.
 const CAPACITOR: f64 = 150.0;
 /// Horizontal positions of the two wires that lead down to the round plug.
 const MARGINS: [f64; 2] = [20.0, 34.0];
 
-/// Parts of the supply, and the way of the ground strip for each, from 0.
+/// Parts of the supply, each with its way (terminal) of the ground strip, counted from 0.
 const GROUND_OF: [(&str, usize); 5] = [
     ("battery", 0),
     ("converter-in", 1),
@@ -51,7 +52,7 @@ const GROUND_OF: [(&str, usize); 5] = [
     ("capacitor", 4),
 ];
 
-/// The first way of the ground strip for a servo.
+/// The index of the ground strip's first way (terminal) for a servo.
 pub const FIRST_SERVO_WAY: usize = GROUND_OF.len();
 
 /// The wire hole of the ground strip for a part of the supply.

@@ -8,9 +8,9 @@ use svg::node::element::{Circle, Group};
 use crate::make::draw::route::Path;
 use crate::shared::ink::{circle, curve, edged};
 
-/// Black of wires and of the balance plug.
+/// The colour of black wires.
 pub const BLACK: &str = "#1b1b1b";
-/// The middle wire of a balance plug.
+/// The colour of a balance plug's middle wire.
 pub const GREY_WIRE: &str = "#9a9a9a";
 
 /// Widths, pixels: a wire of 0.5 mm2, a thin jumper (`THIN`), and a lead that belongs to a component or the battery
