@@ -46,8 +46,9 @@ pub enum Goal {
 impl Goal {
     /// Derives the goal of a gait from its movement on rigid legs.
     ///
-    /// # Errors Fails for a gait that stands, walks along a curve, or whose movement depends on unmeasurable
-    /// differences between the pads.
+    /// # Errors
+    /// Fails for a gait that stands, walks along a curve, or whose movement depends on unmeasurable differences
+    /// between the pads.
     pub fn of(gait: &CheckedGait, ground: &Ground) -> Result<Self, GoalError> {
         let name = || gait.name().to_owned();
         let movement = gait.predict(&ground.rigid());
