@@ -34,7 +34,7 @@ impl<'a> Candidate<'a> {
 #[derive(Debug)]
 pub struct NamedWalk<'f> {
     pub(crate) walk: Walk<'f>,
-    /// Index of the walk's gait in [`Gaits::known`].
+    /// Index of the walk's gait in [`Gaits::candidates`].
     pub(crate) gait: usize,
     pub(crate) measured: Measured,
 }

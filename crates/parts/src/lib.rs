@@ -30,7 +30,7 @@
 //!   for collision proofs: a body that is clear of the hull is clear of the part.
 //!   [`Shape::distance`] is exact.
 //! - [`Assembly::may_touch`] is true for pairs that touch by design: bodies that move together,
-//!   and bodies of which one names the other in [`Body::meets`], as a screw names the parts that it
+//!   and bodies of which one names the other in [`Body::allowed_contacts`], as a screw names the parts that it
 //!   passes through, the rod its sleeve, and the strut the leg's crank that its spring pulls.
 //! - [`Assembly::prove`] proves how close any two bodies come at any pose that the guard
 //!   accepts; [`Assembly::nearest`] only checks some poses.

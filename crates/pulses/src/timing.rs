@@ -7,7 +7,7 @@ pub const LEAD: u8 = 220;
 /// CPU cycles in a microsecond, each counted by Timer1: the CPU runs at 16 MHz.
 pub const CYCLES_PER_US: u16 = 16;
 
-/// The shortest possible pulse, cycles: see [`MARGIN`].
+/// The shortest possible pulse, cycles: both margins of a slot have this length.
 pub const MIN_WIDTH: u16 = MARGIN;
 
 /// Cycles (62.5 us) after the start and before the end of a slot that are reserved for the engine's two handlers and

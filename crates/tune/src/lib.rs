@@ -10,7 +10,8 @@
 //! all cores, and the web page scores them one after another in a worker. All random numbers come from one seed in a
 //! fixed order, so both find the same gait.
 //!
-//! # When not to use it The search varies four parameters of a wave gait or three of a held gait. For a gait that
+//! # When not to use it
+//! The search varies four parameters of a wave gait or three of a held gait. For a gait that
 //! follows a path of the head or tail, or that walks along a curve, write a table in robot.toml and let `lizard
 //! gaits` check it. For another walking machine, use only the [`Search`], or a crate for optimisation: the rest
 //! depends on a `lizard_robot::Robot`.

@@ -29,7 +29,7 @@ pub struct Variant {
     /// Additional mass, g.
     extra_mass: f64,
     friction: f64,
-    /// Gaits that may differ by more than [`ALLOWED`], with the share that is allowed instead.
+    /// Gaits that may differ by more than [`MAX_DEVIATION_SHARE`], with the share that is allowed instead.
     exceptions: &'static [(&'static str, f64)],
 }
 

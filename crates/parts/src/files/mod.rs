@@ -39,7 +39,7 @@ impl File {
 /// The files of a part: STEP and STL, and DXF and SVG if it can be cut from a sheet.
 ///
 /// # Errors
-/// Returns [`Unfit::Surface`] for a part whose layers do not form a closed surface.
+/// Returns [`BuildProblem::Surface`] for a part whose layers do not form a closed surface.
 pub fn part_files(part: &Part, kerf: f64) -> Result<Vec<File>, BuildProblem> {
     let solid = Solid::of(&part.prisms);
     let printed = Solid::of(&part.printed_layers().0);

@@ -34,7 +34,7 @@ pub struct Solid {
 pub struct Edge {
     /// The two corners, each by the indices of a point and of a height.
     pub ends: [(usize, usize); 2],
-    /// The bulge, as in [`Side`]: 0 if straight.
+    /// The bulge, as in [`Segment`]: 0 if straight.
     pub bulge: f64,
 }
 

@@ -61,7 +61,7 @@ const NOTCH_TEXT: &str =
 /// The guide as Markdown and HTML, with its pictures at a pose, usually neutral.
 ///
 /// # Errors
-/// Returns [`Unfit::Blocked`] for a screw that cannot be reached.
+/// Returns [`BuildProblem::Blocked`] for a screw that cannot be reached.
 pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<File>, BuildProblem> {
     let mut steps = steps(assembly.robot().drive().strut().is_some());
     let has_strip = assembly.robot().parts().strip > 0.0;

@@ -12,7 +12,7 @@ use crate::unfit::BuildProblem;
 /// Makes bill.json and the folder guide/, with pictures at a pose, usually neutral.
 ///
 /// # Errors
-/// Returns [`Unfit::Blocked`] for a screw that cannot be reached.
+/// Returns [`BuildProblem::Blocked`] for a screw that cannot be reached.
 ///
 /// # Panics
 /// Never: texts and numbers can always be written as JSON.

@@ -44,7 +44,7 @@ use writer::Writer;
 /// Returns a scene as an MJCF file for MuJoCo.
 ///
 /// # Errors
-/// Returns [`Unfit::Surface`] for a part whose layers do not make a body.
+/// Returns [`BuildProblem::Surface`] for a part whose layers do not make a body.
 pub fn mjcf(
     assembly: &Assembly,
     neutral: &Solution,
@@ -64,7 +64,7 @@ impl<'a> Pieces<'a> {
     /// Computes the shapes and masses for a scene.
     ///
     /// # Errors
-    /// Returns [`Unfit::Surface`] for a part whose layers do not make a body.
+    /// Returns [`BuildProblem::Surface`] for a part whose layers do not make a body.
     pub fn of(assembly: &'a Assembly, scene: &Scene) -> Result<Self, BuildProblem> {
         let pieces = pieces(assembly, scene)?;
         Ok(Self { assembly, pieces })

@@ -213,7 +213,7 @@ impl<'a> Questions<'a> {
     }
 
     /// Answers all questions and makes the proof. `known` returns an answer that
-    /// [`Questions::one`] has already given for an index. The proof ends at the first parts that
+    /// [`Questions::answer_one`] has already given for an index. The proof ends at the first parts that
     /// do not fit, unless the quick check has found such parts: then each of its worst pairs is
     /// bounded. After parts that may not fit, the remaining questions are answered with fewer
     /// regions and without `known`.

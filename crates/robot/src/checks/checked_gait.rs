@@ -195,7 +195,7 @@ impl CheckedGait {
         self.simulate_scaled_cycle(ground, motors, pace, 1.0)
     }
 
-    /// Simulates as [`CheckedGait::driven`] does, with servos that turn `scale` times as far as the firmware assumes.
+    /// Simulates as [`CheckedGait::simulate_driven_cycle`] does, with servos that turn `scale` times as far as the firmware assumes.
     pub(crate) fn simulate_scaled_cycle(
         &self,
         ground: &Ground,

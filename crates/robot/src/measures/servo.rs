@@ -99,7 +99,7 @@ pub(crate) fn parse_pin(name: &str) -> Option<u8> {
     }
 }
 
-/// Reads the key `pin`, whose value must be a name that the function [`pin`] accepts.
+/// Reads the key `pin`, whose value must be a name that the function [`parse_pin`] accepts.
 pub(crate) fn read_pin(section: &Section) -> Checked<u8> {
     let text = section.text("pin")?;
     parse_pin(text).ok_or_else(|| {

@@ -91,7 +91,7 @@ pub struct Commands {
 
 /// Runs the core of a robot on a recording: `received` are the bytes that reached the UNO, `first` is the cycle of
 /// A1's first pulse, `count` the number of frames from that pulse on. The result is exact except for the lines of
-/// [`undecided`].
+/// [`undecided_lines`].
 pub fn play(robot: Robot<'static>, received: &[SerialByte], first: u64, count: usize) -> Commands {
     play_with_contacts(robot, received, &[], first, count)
 }
