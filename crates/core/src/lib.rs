@@ -32,12 +32,12 @@
 //!
 //! ```
 //! use lizard_core::numbers::calibration::Calibration;
-//! use lizard_core::console::line::{Ended, Line};
+//! use lizard_core::console::line::{LineEnd, Line};
 //! use lizard_core::numbers::units::{Angle, CYCLES_PER_US, Sweep, Width};
 //!
 //! let mut line = Line::new();
 //! let ended = b"Pose 120\r".iter().find_map(|byte| line.push(*byte));
-//! assert_eq!((ended, line.text()), (Some(Ended::Line), &b"pose 120"[..]));
+//! assert_eq!((ended, line.text()), (Some(LineEnd::Line), &b"pose 120"[..]));
 //!
 //! // A servo that holds 90 degrees at 1500 us and turns 90 degrees either way, 10 us for
 //! // each degree: 57 600 cycles for a turn of 65 536 steps, and so 0.879 for a step.

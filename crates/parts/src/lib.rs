@@ -13,7 +13,7 @@
 //! for body in assembly.bodies() {
 //!     let place = assembly.place(body.mount, &pose);
 //!     for prism in &body.prisms {
-//!         let _shapes: Vec<_> = prism.add.iter().map(|shape| shape.placed(&place)).collect();
+//!         let _shapes: Vec<_> = prism.filled_shapes.iter().map(|shape| shape.placed(&place)).collect();
 //!     }
 //! }
 //! # Ok::<(), lizard_robot::Error>(())

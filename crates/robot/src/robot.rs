@@ -151,9 +151,8 @@ impl Robot {
         &self.content.name
     }
 
-    /// Makes the robot's section of flash, at most [`SPACE`] bytes, with the maps of certified cells, whose proof
-    /// takes a moment. If there is no room for the maps, they are left out, and the firmware computes the distance
-    /// from the limits at every pose.
+    /// Makes the robot's section of flash, at most [`SPACE`] bytes, with the maps of certified cells, if there is
+    /// room; without them the firmware computes the distance from the limits at every pose.
     pub fn section(&self) -> Vec<u8> {
         self.with_maps().unwrap_or_else(|| self.content.section())
     }
