@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use lizard_host_tests::root;
 
 /// The crates whose modules are read.
-const CRATES: [&str; 18] = [
+const CRATES: [&str; 20] = [
     "crates/contact",
     "crates/core",
     "crates/film",
@@ -23,10 +23,12 @@ const CRATES: [&str; 18] = [
     "crates/simulated-uno",
     "crates/tune",
     "crates/twin",
+    "crates/upload",
     "tools/linker",
     "web/wasm",
     "web/wasm-measure",
     "web/wasm-parts",
+    "web/wasm-upload",
 ];
 
 /// The rooms of the core, which are its top-level modules, the top room first. A room may use the rooms below it.

@@ -207,9 +207,9 @@ async function start(): Promise<void> {
       measure?.received(line);
       if (line.startsWith('# fault')) remote.buzz();
     },
-    isUno: (from) =>
+    isUno: () =>
       confirm(
-        `Is this board an Arduino UNO? By its USB chip it may also be a Nano, whose boot section begins at byte ${from} of the flash. ` +
+        'Is this board an Arduino UNO? By its USB chip it may also be a Nano, and this robot reaches into the boot section of a Nano. ' +
           'What is written there would ruin a Nano until a programmer at its pins repairs it. OK: it is a UNO.',
       ),
     doing(gait) {

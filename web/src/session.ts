@@ -2,10 +2,10 @@
 // session and call its methods.
 import { files } from './files';
 import { type SavedChanges, kept } from './kept';
+import { BootLine, loadUpload } from './link/boot-line';
 import { Deadman } from './link/deadman';
 import { type Answer, Dialogue, DroppedQuestion, GREETING } from './link/dialogue';
 import type { Link, Simulated } from './link/link';
-import { flash, identify, imageOf, type Piece, type Progress, FirmwareMismatch } from './link/stk500';
 import { UnoLink } from './link/uno-link';
 import {
   type Description,
@@ -71,8 +71,8 @@ export interface Listener {
   state(status: Status): void;
   /** Called when another board is connected. */
   link(link: Link): void;
-  /** Asks the user to confirm a UNO: on a Nano, writing beyond `from` would overwrite the boot loader. */
-  isUno(from: number): boolean;
+  /** Asks the user whether the board is a UNO: on a Nano, writing would overwrite the boot loader. */
+  isUno(): boolean;
   /** Called when the robot leaves a line unanswered, and when it answers again. */
   silent(isSilent: boolean): void;
   /** Called when `stop` begins to be sent, and when the robot has answered it. */
@@ -81,8 +81,8 @@ export interface Listener {
   trouble(cause: Cause, message: string | null): void;
 }
 
-/** Start of a Nano's boot section (high fuse 0xDA). A UNO's begins 1.5 KB later. */
-const NANO_BOOT = 0x7800;
+/** Called with the progress of a write: the finished pages of a step, and all of them. */
+export type Progress = (step: 'reading' | 'writing' | 'verifying' | 'again', done: number, of: number) => void;
 
 const isBanner = (banner: BoardBanner | undefined): banner is Banner => typeof banner === 'object' && banner !== null;
 
@@ -123,7 +123,7 @@ export class Session {
   /** The firmware, which is the same for every robot. */
   private code: Uint8Array | null = null;
   private floorSetting: Floor | null = null;
-  private bootLoader: string | null = null;
+  private bootLoader: Uint8Array | null = null;
   private readonly path = new WalkedPath();
   /**
    * Time for which the robot was followed so far, s: simulated time, or the frames of a real board's reported poses.
@@ -153,7 +153,7 @@ export class Session {
     const before = this.file;
     this.file = '';
     try {
-      const [toml, predictions, code] = await Promise.all([files.toml(name), files.predictions(name), this.code ?? files.code().then(imageOf)]);
+      const [toml, predictions, code] = await Promise.all([files.toml(name), files.predictions(name), this.code ?? files.code()]);
       if (choice !== this.choices) return;
       this.code = code;
       const refused = this.loadToml(toml, null, [toml, predictions]);
@@ -340,15 +340,13 @@ export class Session {
   /** Identifies a board without this firmware by its boot loader. */
   private async identify(link: Link): Promise<void> {
     this.hasLoader = false;
-    let message = 'The board is an Arduino UNO, an ATmega328P by its boot loader, and this firmware is not on it.';
-    this.dialogue.end();
+    let message: string;
     try {
-      await identify(link);
+      const model = await this.withBootLoader(link, async ({ identify }, line) => identify(line));
+      message = `The board is an Arduino ${model}, an ATmega328P by its boot loader, and this firmware is not on it.`;
       this.hasLoader = true;
     } catch (error) {
-      message = `The board does not speak as this firmware does, and asked for its boot loader ${messageOf(error)}. Is it the right port, and a UNO?`;
-    } finally {
-      if (this.link === link) this.listen();
+      message = `The board does not speak as this firmware does: ${messageOf(error)}.`;
     }
     if (this.link !== link) return;
     this.setBoardBanner(null);
@@ -560,39 +558,33 @@ export class Session {
     await this.link.reset();
   }
 
-  /** Writes a flash image through the boot loader and starts it. Throws an error for the user. */
-  async flash(image: Uint8Array, progress: Progress): Promise<void> {
-    await this.write({ at: 0, bytes: image }, progress, null);
-  }
-
   /**
-   * Writes the page's robot to its section of flash, after the firmware, and starts it. Throws an error for the user;
-   * an `Unfit` if the board's firmware is not the page's, and then nothing was written.
+   * Writes firmware and robot, or the robot alone after the firmware that the board has, and starts it. Throws an error
+   * for the user, which says what the board has then.
    */
-  async flashRobot(progress: Progress): Promise<void> {
-    const { boardBanner, code, section, description } = this;
-    if (!code) throw new Error('the firmware has not come yet');
-    if (boardBanner === null) throw new FirmwareMismatch('this firmware is not on the board: write firmware and robot');
-    if (isBanner(boardBanner) && boardBanner.version !== description.version) {
-      throw new FirmwareMismatch(`the board has firmware ${boardBanner.version}, and this robot is for ${description.version}: write firmware and robot`);
-    }
-    // Without a banner the firmware's version is unknown, so its code is compared.
-    await this.write({ at: description.start, bytes: section }, progress, isBanner(boardBanner) ? null : { at: 0, bytes: code });
+  async flash(bytes: Uint8Array, isRobotAlone: boolean, progress: Progress): Promise<void> {
+    const { link } = this;
+    if (link.kind === 'radio') throw new Error(BY_CABLE);
+    const end = bytes.length + (isRobotAlone ? this.description.start : 0);
+    await this.withBootLoader(link, async ({ Board, needsUno, upload }, line) => {
+      const board = !link.mayBeNano || !needsUno(end) ? Board.Unknown : this.listener.isUno() ? Board.Uno : Board.Nano;
+      this.boardBanner = undefined;
+      this.isWatching = false;
+      this.mayAsk = false;
+      await upload(line, bytes, isRobotAlone, board, progress);
+    });
   }
 
-  private async write(piece: Piece, progress: Progress, under: Piece | null): Promise<void> {
-    const { link } = this;
-    if (link.kind === 'radio') throw new FirmwareMismatch(BY_CABLE);
-    if (piece.at + piece.bytes.length > NANO_BOOT && link.mayBeNano && !this.listener.isUno(NANO_BOOT)) {
-      throw new FirmwareMismatch(`a Nano has ${NANO_BOOT} bytes of flash before its boot section, and this takes ${piece.at + piece.bytes.length}; gaits can be left out until it fits`);
-    }
+  /** Gives the line to the boot loader until `act` has ended. Throws an error for the user. */
+  private async withBootLoader<T>(link: Link, act: (upload: Awaited<ReturnType<typeof loadUpload>>, line: BootLine) => Promise<T>): Promise<T> {
+    const upload = await loadUpload();
+    if (this.link !== link) throw new Error(`the ${link.name} is not connected any more`);
     this.dialogue.end();
-    this.boardBanner = undefined;
-    this.isWatching = false;
-    this.mayAsk = false;
+    const line = new BootLine(link);
     try {
-      await flash(link, piece, progress, under);
+      return await act(upload, line);
     } finally {
+      await line.end();
       if (this.link === link) {
         this.listen();
         this.doing('');

@@ -46,7 +46,7 @@ test('a board that does not answer leads to a question about it', async () => {
   await opened.waitForFunction(() => window.otherBoard);
   await opened.evaluate(() => (window.otherBoard.send = () => {}));
   await opened.clock.runFor(9000);
-  await opened.locator('#trouble', { hasText: 'Is it the right port, and a UNO?' }).waitFor();
+  await opened.locator('#trouble', { hasText: 'no boot loader answers. Is it a UNO or a Nano?' }).waitFor();
 });
 
 test('a board that its port does not reset is asked for its state and tracked', async () => {
@@ -173,7 +173,7 @@ test('a HEX file of another program is identified, and written only when the use
   const choose = () =>
     opened.getByLabel('HEX file').setInputFiles({ name: 'blink.hex', mimeType: 'text/plain', buffer: Buffer.from(blink) });
   await choose();
-  const question = opened.locator('#flash-what', { hasText: 'blink.hex, 128 bytes. It is not this firmware' });
+  const question = opened.locator('#flash-what', { hasText: 'blink.hex, 2 bytes. It is not this firmware' });
   await question.waitFor();
   const flash = () => opened.evaluate(() => window.otherBoard.flash[0]);
   const first = await flash();

@@ -3,7 +3,8 @@
 /**
  * Replaces Web Serial. Properties of `window` set what a test wants: `flashed`, the robot's name after the firmware in the board's
  * flash, or null for an erased flash; `same`, true to open the previous board again; `awake`, true for a board that has run for four
- * seconds and is not reset by its port; `pick`, a function that may throw instead of choosing the port; `garbage`, true for a board
+ * seconds and is not reset by its port; `loaderBaud`, the baud rate of the boot loader, if it is another than the
+ * firmware's; `pick`, a function that may throw instead of choosing the port; `garbage`, true for a board
  * that sends meaningless bytes; `profile`, the Bluetooth service of a port that is no cable; `baud`, that port's rate; `vendor`, the
  * USB vendor of the board's chip. `pulses` has the last width at each pin, us.
  */
@@ -23,11 +24,14 @@ export function fakeSerial() {
   const port = {
     readable: null,
     writable: null,
-    async open() {
+    async open({ baudRate }) {
       window.openPort?.();
+      // The page opens a port again to set its speed.
+      const isSame = window.same || (board && (baudRate !== 115_200 || port.baudRate !== 115_200));
+      port.baudRate = baudRate;
       const { board: first } = window.lizard.link;
       const name = window.flashed === undefined ? 'robot' : window.flashed;
-      if (!window.same) board = new first.constructor(name && (await image(name)), await (await fetch('files/optiboot.hex')).text());
+      if (!isSame) board = new first.constructor(name && (await image(name)), new Uint8Array(await (await fetch('files/optiboot.bin')).arrayBuffer()));
       if (window.baud) board.baud = window.baud;
       // Bytes sent before the port is open are lost.
       if (window.awake) board.run(16_000 * 4000);
@@ -39,8 +43,9 @@ export function fakeSerial() {
         port.readable = null;
         out.error(new Error('The device has been lost.'));
       };
-      port.writable = new WritableStream({ write: (bytes) => board.send(bytes) });
-      board.onByte = (byte) => out.enqueue(Uint8Array.of(byte));
+      const isHeard = () => baudRate === (board.uno.cpu.pc >= 0x3f00 ? (window.loaderBaud ?? 115_200) : 115_200);
+      port.writable = new WritableStream({ write: (bytes) => (isHeard() ? board.send(bytes) : undefined) });
+      board.onByte = (byte) => (isHeard() ? out.enqueue(Uint8Array.of(byte)) : undefined);
       if (window.garbage) {
         board.send = () => {};
         board.onByte = () => {};

@@ -1,5 +1,4 @@
 // Images of robots as the page makes them, made here from the page's own files.
-import { load } from '../../tools/judge/src/hex.js';
 import { file, Robot } from './wasm.js';
 
 /** Makes the image of flash for a robot file of the page. */
@@ -8,7 +7,7 @@ export async function imageOf(name) {
   const { start } = robot.read(await file(`${name}.toml`, 'utf8'));
   const section = robot.section();
   const flash = new Uint8Array(32 * 1024).fill(0xff);
-  load(await file('code.hex', 'utf8'), flash);
+  flash.set(await file('code.bin'));
   flash.set(section, start);
   return flash.subarray(0, start + section.length);
 }

@@ -243,7 +243,7 @@ test('an invalid HEX file is refused before anything is written', async () => {
   await unfold(opened, '#flash');
   const input = opened.getByLabel('HEX file');
   await input.setInputFiles({ name: 'x.hex', mimeType: 'text/plain', buffer: Buffer.from('hello\n') });
-  await opened.locator('#flash-said', { hasText: 'not written: line 1 of the HEX file is no record' }).waitFor();
+  await opened.locator('#flash-said', { hasText: "not written: line 1 is not Intel HEX: missing start code ':'" }).waitFor();
   assert.equal((await type(opened, 'status', 'ok gait=')).slice(0, 8), 'ok gait=', 'the robot goes on');
 });
 

@@ -374,7 +374,7 @@ test('a board that is unplugged while a routine is written says so, and gets it 
   await until(page, 'it is being written', async () => (await text(page, '#routine-said')).startsWith('writing'), 20);
   await page.clock.runFor(60);
   await page.evaluate(() => window.unplug());
-  await until(page, 'it says so', async () => /^not written: .*\. Perhaps only a part of the robot is on the board, which then moves nothing: try again$/.test(await text(page, '#routine-said')));
+  await until(page, 'it says so', async () => /^not written: .*\. The board has half a robot now: its firmware says fault=robot and moves no servo\. Write it again$/.test(await text(page, '#routine-said')));
   assert.deepEqual(await readSteps(page), ['walk 1'], 'the routine is still in the page');
   await until(page, 'it may be connected', () => page.locator('#connect').isEnabled());
   await page.evaluate(() => (window.same = true));

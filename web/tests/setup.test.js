@@ -168,7 +168,7 @@ test('a board that does not answer is reported, and no step is a dead end', asyn
   await opened.evaluate(() => (window.otherBoard.send = () => {}));
   await opened.clock.runFor(10000);
   await setup(opened).getByText('answers neither as this firmware nor as a boot loader').waitFor();
-  await pressAndWait(opened, 'Write firmware and robot', /^not written: the board does not answer/);
+  await pressAndWait(opened, 'Write firmware and robot', /^not written: no boot loader answers/);
   await step(opened, 'Horns');
   await setup(opened).getByText('No robot with this firmware answers').waitFor();
   await press(opened, 'To the board');

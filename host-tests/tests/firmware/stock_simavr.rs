@@ -213,7 +213,7 @@ fn the_hex_files_start_in_debians_simavr_and_report_its_low_voltage() {
     let elf = FirmwareBench::elf();
     fs::copy(elf.with_extension("hex"), folder.join("made.hex")).expect("the firmware");
     let image = lizard_host::firmware::with_robot(&elf, robot()).expect("the firmware");
-    let image = lizard_host::flash::image::Image::new(image.flash()).expect("an image");
+    let image = lizard_upload::Image::new(image.flash()).expect("an image");
     fs::write(folder.join("image.hex"), image.to_hex()).expect("a folder");
     for file in ["made.hex", "image.hex"] {
         let printed = run_simavr(

@@ -1,5 +1,8 @@
 // The serial link to a simulated UNO, or to a board by USB or radio.
 
+/** The baud rate of the firmware, and of every link that is not told another one. */
+export const BAUD = 115_200;
+
 export const sleep = (ms: number): Promise<void> => new Promise((done) => setTimeout(done, ms));
 
 export interface Link {
@@ -20,8 +23,8 @@ export interface Link {
   onReach?: (isInReach: boolean) => void;
   /** Sends bytes. */
   write(bytes: Uint8Array): Promise<void>;
-  /** Resets the board, as opening a port does. */
-  reset(): Promise<void>;
+  /** Resets the board, as opening a port does, and sets the speed of a real line. */
+  reset(baud?: number): Promise<void>;
   /** Waits in the board's time, which is simulated time for a simulated board. */
   wait(ms: number): Promise<void>;
   close(): Promise<void>;

@@ -1,7 +1,7 @@
 // The link to a board by Web Serial, which Chromium browsers and newer Firefox have, over https or on localhost: on USB,
 // or through an HC-05, a Bluetooth module that the system knows as a serial port.
 import { messageOf } from '../trouble';
-import { sleep, type Link } from './link';
+import { BAUD, sleep, type Link } from './link';
 
 /** The parts of Web Serial that the page uses; TypeScript's library does not declare them. */
 interface SerialPort {
@@ -17,7 +17,6 @@ interface Serial {
   requestPort(options: { allowedBluetoothServiceClassIds: string[] }): Promise<SerialPort>;
 }
 
-const BAUD = 115_200;
 /** Bluetooth's serial port profile, which an HC-05 has. */
 const SERIAL_PROFILE = '00001101-0000-1000-8000-00805f9b34fb';
 /** The USB vendors arduino.cc and arduino.org, whose chips are on UNOs and on no Nano. */
@@ -43,6 +42,9 @@ export class PortLink implements Link {
   private reader: ReadableStreamDefaultReader<Uint8Array> | null = null;
   private writer: WritableStreamDefaultWriter<Uint8Array> | null = null;
   private closing = false;
+  private baud = BAUD;
+  /** Settled when nothing is read from the port any more. */
+  private listening: Promise<void> = Promise.resolve();
 
   private constructor(private readonly port: SerialPort) {}
 
@@ -71,14 +73,19 @@ export class PortLink implements Link {
       if (error instanceof DOMException && error.name === 'NotFoundError') return null;
       throw error;
     }
+    const link = new PortLink(port);
     try {
-      await port.open({ baudRate: BAUD, bufferSize: 4096 });
+      await link.openPort();
     } catch (error) {
       throw new Error(`${messageOf(error)} Another program may have the port: close that, and connect again.`);
     }
-    const link = new PortLink(port);
-    void link.listen();
     return link;
+  }
+
+  private async openPort(): Promise<void> {
+    await this.port.open({ baudRate: this.baud, bufferSize: 4096 });
+    this.closing = false;
+    this.listening = this.listen();
   }
 
   async write(bytes: Uint8Array): Promise<void> {
@@ -88,8 +95,14 @@ export class PortLink implements Link {
     await this.writer.write(bytes).catch(() => Promise.reject(new Error(GONE)));
   }
 
-  async reset(): Promise<void> {
+  async reset(baud = this.baud): Promise<void> {
     if (this.kind === 'radio') return;
+    if (baud !== this.baud) {
+      // Only opening sets a port's speed.
+      await this.close();
+      this.baud = baud;
+      await this.openPort().catch(() => Promise.reject(new Error(GONE)));
+    }
     for (const isLow of [false, true]) {
       await this.port.setSignals({ dataTerminalReady: isLow, requestToSend: isLow }).catch(() => Promise.reject(new Error(GONE)));
       await sleep(RESET);
@@ -103,7 +116,9 @@ export class PortLink implements Link {
   async close(): Promise<void> {
     this.closing = true;
     await this.reader?.cancel().catch(() => {});
+    await this.listening;
     this.writer?.releaseLock();
+    this.writer = null;
     await this.port.close().catch(() => {});
   }
 

@@ -1,7 +1,6 @@
 // A simulated Arduino UNO that can be reset and flashed. The chip is that of tools/judge, on avr8js; a reset makes a
 // new chip with the old memories.
 import { corrections } from '../../../tools/judge/src/corrections/index.js';
-import { load } from '../../../tools/judge/src/hex.js';
 import { receiveBuffer } from '../../../tools/judge/src/receive-buffer.js';
 import { Scope } from '../../../tools/judge/src/scope.js';
 import { selfProgramming } from '../../../tools/judge/src/self-programming.js';
@@ -49,18 +48,18 @@ export class SimulatedBoard {
   private readonly contacts = new Map<number, boolean>();
 
   /**
-   * Starts a UNO at power-on. `image` is the beginning of flash, `bootLoader` a HEX file, `rail` the converter's
+   * Starts a UNO at power-on. `image` is the beginning of flash, `bootLoader` what it has from `BOOT` on, `rail` the converter's
    * channel for the servos' rail and the voltage at its pin, `eeprom` the content of a previous board's EEPROM.
    */
   constructor(
     image: Uint8Array | null,
-    bootLoader: string | null,
+    bootLoader: Uint8Array | null,
     private readonly rail: [number, number] | null,
     eeprom?: Uint8Array,
   ) {
     const flash = new Uint8Array(32 * 1024).fill(0xff);
     if (image !== null) flash.set(image);
-    if (bootLoader !== null) load(bootLoader, flash);
+    if (bootLoader !== null) flash.set(bootLoader, BOOT);
     this.begin('power', flash, eeprom);
   }
 

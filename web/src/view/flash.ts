@@ -1,5 +1,5 @@
 // The panel that writes firmware and robot through the board's boot loader.
-import { hasConsole, imageOf } from '../link/stk500';
+import { loadUpload } from '../link/boot-line';
 import { BY_CABLE, type Session } from '../session';
 import { messageOf } from '../trouble';
 import { element } from './canvas';
@@ -59,13 +59,16 @@ export class FlashView {
   private async choose(file: File): Promise<void> {
     this.forget();
     this.message.textContent = '';
+    let isLizard: boolean;
     try {
-      this.chosen = imageOf(await file.text());
+      const upload = await loadUpload();
+      this.chosen = upload.imageOf(await file.text());
+      isLizard = upload.isLizard(this.chosen);
     } catch (error) {
       this.message.textContent = `not written: ${messageOf(error)}`;
       return;
     }
-    const what = hasConsole(this.chosen)
+    const what = isLizard
       ? 'It is lizard firmware.'
       : 'It is not this firmware: with it the board is no longer a lizard, until firmware and robot are written again.';
     element('flash-what').textContent =

@@ -1,6 +1,5 @@
 // Writes firmware or robot to a board, and shows progress and result in the caller's elements.
-import { FirmwareMismatch } from '../link/stk500';
-import type { Session } from '../session';
+import type { Progress, Session } from '../session';
 import { messageOf } from '../trouble';
 
 /** The elements that show progress and result. */
@@ -15,7 +14,13 @@ export type WriteContent = 'robot' | 'all' | Uint8Array;
 /** The message when no board is connected. */
 export const NO_BOARD = 'No board is connected: Connect a board… is in the room Board. The simulated board has this robot already.';
 
-const DOES = { comparing: 'comparing with the firmware on the board…', writing: 'writing…', verifying: 'verifying…' };
+/** The message of each step, and the part of the progress bar where the step begins and ends. */
+const STEPS = {
+  again: ['no answer; the board is called again…', 0, 0],
+  reading: ['reading what the board has…', 0, 25],
+  writing: ['writing…', 25, 75],
+  verifying: ['verifying…', 75, 100],
+} as const;
 
 export class Writer {
   private isWriting = false;
@@ -44,21 +49,21 @@ export class Writer {
     progress.hidden = false;
     progress.value = 0;
     message.textContent = 'calling the boot loader…';
-    let isTouched = false;
     let isWritten = false;
-    const show = (done: number, of: number, does: keyof typeof DOES) => {
-      isTouched ||= does === 'writing';
-      if (does !== 'comparing') progress.value = (50 * done) / of + (does === 'verifying' ? 50 : 0);
-      if (message.textContent !== DOES[does]) message.textContent = DOES[does];
+    const show: Progress = (step, done, of) => {
+      const [text, from, to] = STEPS[step];
+      // The page with which the program starts is written after all others were verified.
+      progress.value = step === 'again' ? 0 : Math.max(progress.value, from + ((to - from) * done) / of);
+      if (message.textContent !== text) message.textContent = text;
     };
     try {
-      await (what === 'robot' ? session.flashRobot(show) : session.flash(what === 'all' ? session.image : what, show));
+      await (what === 'robot' ? session.flash(session.section, true, show) : session.flash(what === 'all' ? session.image : what, false, show));
       isWritten = true;
       // The simulation must not be mistaken for a board.
       const where = isReal ? '' : ` to the ${name}`;
       message.textContent = `written${where} and verified in ${formatSeconds(performance.now() - start)}`;
     } catch (error) {
-      message.textContent = `not written: ${messageOf(error)}${isTouched && !(error instanceof FirmwareMismatch) ? TORN[what === 'robot' ? 'robot' : 'all'] : ''}`;
+      message.textContent = `not written: ${messageOf(error)}`;
     }
     progress.hidden = true;
     this.isWriting = false;
@@ -70,12 +75,6 @@ export class Writer {
     return false;
   }
 }
-
-/** Messages for the consequence of an interrupted write. */
-const TORN = {
-  robot: '. Perhaps only a part of the robot is on the board, which then moves nothing: try again',
-  all: '. Perhaps only a part of it is on the board, which then does nothing: try again',
-};
 
 /** Formats a time in seconds, with a decimal below 9.5 s. */
 const formatSeconds = (ms: number) => `${(ms / 1000).toFixed(ms < 9500 ? 1 : 0)} s`;

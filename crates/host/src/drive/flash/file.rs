@@ -2,23 +2,25 @@
 
 use std::path::Path;
 
-use lizard_core::numbers::section::START;
 use lizard_robot::Robot;
+use lizard_upload::{Image, ImageError};
 
-use super::image::{BLANK, Image, ImageError};
 use crate::Failure;
 use crate::shared::files;
 use crate::shared::firmware::CODE;
+
+impl From<ImageError> for Failure {
+    fn from(error: ImageError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
 
 /// The image of a robot: the code inside this program followed by this robot's section.
 ///
 /// # Errors
 /// Never fails for a valid robot; a test makes the image of every built-in robot.
 pub fn image(robot: &Robot) -> Result<Image, ImageError> {
-    let mut bytes = Image::from_hex(CODE)?.bytes().to_vec();
-    bytes.resize(START.into(), BLANK);
-    bytes.extend(robot.section());
-    Image::new(bytes)
+    Image::firmware(CODE, &robot.section())
 }
 
 /// A robot's section alone.
@@ -42,6 +44,8 @@ pub fn read_hex_image(path: &Path) -> Result<Image, Failure> {
 #[cfg(test)]
 mod tests {
     use lizard_core::numbers::mark::Mark;
+    use lizard_core::numbers::section::START;
+    use lizard_upload::BLANK;
 
     use super::*;
 

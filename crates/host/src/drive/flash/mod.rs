@@ -1,28 +1,20 @@
 //! `lizard flash`: writes the firmware to a UNO or a Nano through the board's own boot loader.
 //!
-//! The boot loader uses the same USB cable as the console, but it listens only for a second after a reset, it has
-//! no checksums, and a cable pulled during an upload leaves flash partly written. So the flash is read first, only
-//! pages that differ are written, all of them are read back, and the page at which the program starts is written
-//! last.
+//! The order in which pages are written, so that a pulled cable is never dangerous, is that of [`lizard_upload`]; here
+//! are the port, the image and the words to the user.
 
-mod chip;
-#[cfg(test)]
-mod double;
 pub mod file;
-mod found;
-pub mod image;
-pub mod serial_board;
-pub mod stk500;
-pub mod target;
-pub mod upload;
+mod serial_board;
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-pub use chip::Chip;
-pub use found::{FlashContents, Program, RobotInFlash};
-
+use lizard_upload::{
+    Event, Image, Loader, Model, PAGE_BYTES, PageCounts, Step, Target, Timeouts, UploadError,
+    upload,
+};
+use pollster::block_on;
 use serde::Serialize;
 
 use crate::drive::console::find::{self, FindError, UsbPort};
@@ -32,11 +24,7 @@ use crate::drive::console::port::BAUD;
 use crate::shared::json;
 use crate::shared::progress::progress_bar;
 use crate::{Failure, RobotFile};
-use image::{Image, PAGE_BYTES};
 use serial_board::SerialBoard;
-use stk500::{Loader, Timeouts};
-use target::{Model, Target};
-use upload::{Event, PageCounts, Step};
 
 /// Write the firmware with your robot to a UNO or a Nano on USB
 ///
@@ -159,7 +147,7 @@ fn write(
     let bar = progress_bar(0, "{msg} {wide_bar} {percent} %");
     let mut loader = Loader::new(board, Timeouts::default());
     let start = Instant::now();
-    let done = upload::upload(&mut loader, image, target, &mut |event| match event {
+    let mut report = |event: Event<'_>| match event {
         Event::Found(found) => bar.suspend(|| println(&found.to_string())),
         Event::Retry {
             trouble,
@@ -180,13 +168,28 @@ fn write(
             bar.set_length(of as u64);
             bar.set_position(done as u64);
         }
-    });
+    };
+    let done = block_on(upload(&mut loader, image, target, &mut report));
     bar.finish_and_clear();
-    let done = done?;
+    let done = done.map_err(failure)?;
     println(&summary(done, start.elapsed()));
     let mut board = loader.into_board();
     board.set_baud(BAUD)?;
     Ok((board, done))
+}
+
+/// The failure of an upload, with the option that helps.
+fn failure(error: UploadError) -> Failure {
+    let remedy = match &error {
+        UploadError::NoLizard(_) | UploadError::Format { .. } => {
+            ". Without --only-robot both are written"
+        }
+        UploadError::TooLong(error) if error.is_in_doubt() => {
+            ". If it is a UNO, say so: --board uno"
+        }
+        _ => "",
+    };
+    Failure::Impossible(format!("{error}{remedy}"))
 }
 
 /// A message about a finished upload.

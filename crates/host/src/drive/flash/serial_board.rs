@@ -4,9 +4,11 @@ use std::io::{self, ErrorKind, Read, Write};
 use std::thread::sleep;
 use std::time::Duration;
 
+use lizard_upload::{Board, BoardError};
 use serialport::SerialPort;
 
-use super::stk500::Board;
+use crate::drive::clock::Deadline;
+use crate::drive::console::link::is_gone;
 use crate::drive::console::port::{self, PortError};
 
 /// Time for which each level of the reset lines is held, and pause between closing and reopening a port.
@@ -71,8 +73,8 @@ impl SerialBoard {
     }
 }
 
-impl Board for SerialBoard {
-    fn reset(&mut self, baud: u32) -> io::Result<()> {
+impl SerialBoard {
+    fn reset_at(&mut self, baud: u32) -> io::Result<()> {
         let fresh = std::mem::take(&mut self.is_fresh);
         match self.toggle_reset() {
             Ok(()) => {}
@@ -82,6 +84,62 @@ impl Board for SerialBoard {
             Err(_) => self.open_again()?,
         }
         self.set_baud(baud)
+    }
+
+    /// Reads the bytes that are available, waiting some milliseconds for them; returns 0 if there are none.
+    fn read_available(&mut self, bytes: &mut [u8]) -> Result<usize, BoardError> {
+        match Read::read(self, bytes) {
+            Ok(0) => Err(BoardError::Gone),
+            Ok(count) => Ok(count),
+            Err(error) => match error.kind() {
+                ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::Interrupted => Ok(0),
+                _ => Err(board_error(error)),
+            },
+        }
+    }
+}
+
+/// Reads block, so that the futures are ready when they are first polled.
+impl Board for SerialBoard {
+    async fn reset(&mut self, baud: u32) -> Result<(), BoardError> {
+        self.reset_at(baud).map_err(board_error)
+    }
+
+    async fn write(&mut self, bytes: &[u8]) -> Result<(), BoardError> {
+        self.write_all(bytes).map_err(board_error)
+    }
+
+    async fn read(&mut self, bytes: &mut [u8], time: Duration) -> Result<usize, BoardError> {
+        let mut end = Deadline::after(time);
+        let mut filled = 0;
+        while filled < bytes.len() {
+            let count = self.read_available(&mut bytes[filled..])?;
+            filled += count;
+            // Bytes that have arrived while this program was suspended are read.
+            if count == 0 && end.has_passed() {
+                break;
+            }
+        }
+        Ok(filled)
+    }
+
+    async fn discard(&mut self, time: Duration) -> Result<(), BoardError> {
+        let mut end = Deadline::after(time);
+        let mut bytes = [0; 256];
+        loop {
+            self.read_available(&mut bytes)?;
+            if end.has_passed() {
+                return Ok(());
+            }
+        }
+    }
+}
+
+fn board_error(error: io::Error) -> BoardError {
+    match error.kind() {
+        ErrorKind::TimedOut => BoardError::Busy,
+        _ if is_gone(&error) => BoardError::Gone,
+        _ => BoardError::Other(error.to_string()),
     }
 }
 

@@ -9,8 +9,7 @@
 //!
 //! An ELF contains a robot. If that is not the selected robot, one of the two is a mistake, and the ELF is refused.
 
-use lizard_core::numbers::robot::Robot as CoreRobot;
-use lizard_core::numbers::section::{Region, START};
+pub use lizard_upload::label;
 
 #[cfg(feature = "simulator")]
 pub use simulated::{Firmware, Unreadable, image_with, read, with_robot};
@@ -25,14 +24,3 @@ mod simulated;
 ///
 /// `make code-image` writes the file, and a test compares it with a build of the source.
 pub const CODE: &str = include_str!("../../../../../firmware/code.hex");
-
-/// A robot's name and hash, as printed in the firmware's banner.
-pub fn label(robot: &CoreRobot) -> String {
-    let name: String = robot.robot_name().map(char::from).collect();
-    format!("{name} {:08x}", robot.hash())
-}
-
-/// The robot in the contents of flash, which start at address 0; `None` if there is no valid robot.
-pub(crate) fn robot_in(flash: &[u8]) -> Option<CoreRobot<'_>> {
-    CoreRobot::open(Region::new(flash.get(usize::from(START)..)?)).ok()
-}

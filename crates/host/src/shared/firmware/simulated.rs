@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 
 use lizard_core::numbers::section::{SPACE, START};
 use lizard_robot::Robot;
+use lizard_upload::{label, robot_in};
 use simulated_uno::{Image, LoadError};
 
-use super::{CODE, label, robot_in};
+use super::CODE;
 use crate::shared::files::note_input;
 use crate::{Failure, RobotFile};
 

@@ -6,11 +6,12 @@
 //! that. No boot loader reports its fuses. An old Nano is recognised by its speed; a newer one talks like a UNO,
 //! and only its USB chip may tell.
 
-use super::image::{BOOT_ADDRESS, Image, NANO_BOOT_ADDRESS};
-use super::stk500::Kind;
+use crate::image::{BOOT_ADDRESS, Image, NANO_BOOT_ADDRESS};
+use crate::loader::Kind;
 
 /// A board that a user names.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Model {
     /// An Arduino UNO, or a copy of it
     Uno,
@@ -31,7 +32,7 @@ pub struct Target {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("{} bytes of flash are needed, and a Nano has {NANO_BOOT_ADDRESS} before its boot section{}. \
          Nothing was written", .end, if *.in_doubt {
-    "; this board may be one, because of its USB chip. If it is a UNO, say so: --board uno"
+    "; this board may be one, because of its USB chip"
 } else {
     ". Gaits can be left out of robot.toml until it fits"
 })]
@@ -40,6 +41,13 @@ pub struct TooLong {
     end: usize,
     /// True if the board may also be a UNO.
     in_doubt: bool,
+}
+
+impl TooLong {
+    /// True if the board may also be a UNO, which has room.
+    pub fn is_in_doubt(self) -> bool {
+        self.in_doubt
+    }
 }
 
 impl Target {

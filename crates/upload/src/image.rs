@@ -90,12 +90,6 @@ pub enum ImageError {
     },
 }
 
-impl From<ImageError> for crate::Failure {
-    fn from(error: ImageError) -> Self {
-        Self::Input(error.to_string())
-    }
-}
-
 impl Image {
     /// An image of these bytes, from address 0 on.
     ///
@@ -107,6 +101,20 @@ impl Image {
             1..=BOOT_ADDRESS => Ok(Self { start: 0, bytes }),
             long => Err(ImageError::TooLong(long)),
         }
+    }
+
+    /// The image of a robot: the firmware's code, in Intel HEX, followed by the robot's section.
+    ///
+    /// # Errors
+    /// Fails if the code is not an image that ends before the section, or if the section is too long.
+    pub fn firmware(code: &str, section: &[u8]) -> Result<Self, ImageError> {
+        let mut bytes = Self::from_hex(code)?.bytes;
+        if bytes.len() > ROBOT_ADDRESS {
+            return Err(ImageError::TooLong(bytes.len()));
+        }
+        bytes.resize(ROBOT_ADDRESS, BLANK);
+        bytes.extend(section);
+        Self::new(bytes)
     }
 
     /// A robot's section without code.

@@ -19,11 +19,12 @@ use std::ops::Range;
 use lizard_core::numbers::mark::Mark;
 use lizard_core::numbers::section::{FORMAT, Header, MAGIC, Region, START};
 
-use super::chip::Chip;
-use super::found::{FlashContents, IDLE_JUMP, Program};
-use super::image::{BLANK, BOOT_ADDRESS, Image, PAGE_BYTES, Page};
-use super::stk500::{Board, Kind, Loader, LoaderError};
-use super::target::{Target, TooLong};
+use crate::board::Board;
+use crate::chip::Chip;
+use crate::contents::{FlashContents, IDLE_JUMP, Program};
+use crate::image::{BLANK, BOOT_ADDRESS, Image, PAGE_BYTES, Page};
+use crate::loader::{Kind, Loader, LoaderError};
+use crate::target::{Target, TooLong};
 
 /// Largest number of attempts, each after a reset. They alternate between the speeds of the boot loaders until one
 /// answers.
@@ -75,22 +76,20 @@ pub enum UploadError {
     /// No boot loader answers.
     #[error(
         "no boot loader answers. Is it a UNO or a Nano? Has another program this port open? Is something \
-         wired to D0 or D1? Where USB does not reset the board, press its button just after the \
-         start of this command"
+         wired to D0 or D1? Where USB does not reset the board, press its reset button just after \
+         you have begun again"
     )]
     NoLoader,
     /// The chip is not that of a UNO.
     #[error("the chip is {0}; the firmware is for {uno}. Nothing was written", uno = Chip::ATMEGA328P)]
     Chip(Chip),
     /// The image is a robot alone, but the board has no code that reads one.
-    #[error(
-        "{0}, and a robot alone moves nothing: write both, without --only-robot. Nothing was written"
-    )]
+    #[error("{0}, and a robot alone moves nothing: write the firmware, too. Nothing was written")]
     NoLizard(FlashContents),
     /// The image is a robot alone, but the board's code reads another format.
     #[error(
-        "{found}, whose robots are of format {}; this program's are of format {FORMAT}. Write \
-         both, without --only-robot. Nothing was written",
+        "{found}, whose robots are of format {}; this robot is of format {FORMAT}: write the \
+         firmware, too. Nothing was written",
         mark.format
     )]
     Format {
@@ -144,19 +143,13 @@ impl fmt::Display for FlashState {
             Self::Unchanged => "Nothing was written: the board is unchanged",
             Self::HalfRobot => {
                 "The board has half a robot now: its firmware says fault=robot and moves no \
-                 servo. Run this command again"
+                 servo. Write it again"
             }
             Self::HalfProgram => {
                 "The board has half a program now, and does nothing. Its boot loader is still \
-                 there: run this command again"
+                 there: write it again"
             }
         })
-    }
-}
-
-impl From<UploadError> for crate::Failure {
-    fn from(error: UploadError) -> Self {
-        Self::Impossible(error.to_string())
     }
 }
 
@@ -165,7 +158,7 @@ impl From<UploadError> for crate::Failure {
 ///
 /// # Errors
 /// See [`UploadError`].
-pub fn upload<B: Board>(
+pub async fn upload<B: Board>(
     loader: &mut Loader<B>,
     image: &Image,
     target: Target,
@@ -187,7 +180,7 @@ pub fn upload<B: Board>(
         if !upload.has_answered {
             kind = loaders.next().unwrap_or(kind);
         }
-        let trouble = match upload.attempt(kind, &mut written) {
+        let trouble = match upload.attempt(kind, &mut written).await {
             Ok(()) => break,
             Err(AttemptError::UploadFailed(error)) => return Err(error),
             Err(AttemptError::Loader(trouble)) => trouble,
@@ -211,6 +204,32 @@ pub fn upload<B: Board>(
         written,
         kept: pages - written,
     })
+}
+
+/// Resets a board and returns the kind of its boot loader; then starts the program in flash.
+///
+/// # Errors
+/// Fails if no boot loader answers, the chip is not that of a UNO, or the connection fails.
+pub async fn identify<B: Board>(loader: &mut Loader<B>) -> Result<Kind, UploadError> {
+    let failed = |trouble| UploadError::Broken {
+        trouble,
+        left: FlashState::Unchanged,
+    };
+    for &kind in Target::default().loaders() {
+        match loader.call(kind).await {
+            Ok(()) => {
+                let chip = Chip(loader.signature().await.map_err(failed)?);
+                let _ = loader.leave().await;
+                return match chip {
+                    Chip::ATMEGA328P => Ok(kind),
+                    chip => Err(UploadError::Chip(chip)),
+                };
+            }
+            Err(trouble) if trouble.is_transient() => {}
+            Err(trouble) => return Err(failed(trouble)),
+        }
+    }
+    Err(UploadError::NoLoader)
 }
 
 /// The reason why one attempt ended.
@@ -243,16 +262,16 @@ struct Upload<'a, B> {
 impl<B: Board> Upload<'_, B> {
     /// Makes one attempt, from the reset to the start of the program. Marks the pages that it
     /// writes.
-    fn attempt(&mut self, kind: Kind, written: &mut [bool]) -> Result<(), AttemptError> {
-        self.loader.call(kind)?;
+    async fn attempt(&mut self, kind: Kind, written: &mut [bool]) -> Result<(), AttemptError> {
+        self.loader.call(kind).await?;
         self.has_answered = true;
-        let chip = Chip(self.loader.signature()?);
+        let chip = Chip(self.loader.signature().await?);
         if chip != Chip::ATMEGA328P {
             return Err(AttemptError::UploadFailed(UploadError::Chip(chip)));
         }
         let room = self.target.check_room(self.image, kind);
         room.map_err(|error| AttemptError::UploadFailed(error.into()))?;
-        let flash = self.read_flash(kind.start())?;
+        let flash = self.read_flash(kind.start()).await?;
         let mut goal = self.image.pages();
         goal.retain(|page| flash[page.range()] != page.bytes);
         if !goal.is_empty() {
@@ -261,10 +280,10 @@ impl<B: Board> Upload<'_, B> {
             }
             // The first page had other contents meanwhile, so it is written again.
             written[self.first_page().address / PAGE_BYTES] = true;
-            self.write_pages(goal, &flash)?;
+            self.write_pages(goal, &flash).await?;
         }
         // An error does not matter: everything is written, and the program starts after a second in any case.
-        let _ = self.loader.leave();
+        let _ = self.loader.leave().await;
         Ok(())
     }
 
@@ -276,7 +295,7 @@ impl<B: Board> Upload<'_, B> {
     }
 
     /// Writes pages. Blanks or idles the image's first page before the others, and writes it last.
-    fn write_pages(&mut self, mut goal: Vec<Page>, flash: &[u8]) -> Result<(), AttemptError> {
+    async fn write_pages(&mut self, mut goal: Vec<Page>, flash: &[u8]) -> Result<(), AttemptError> {
         let first = self.first_page();
         let mut placeholder = [BLANK; PAGE_BYTES];
         if self.image.is_robot_alone() {
@@ -287,23 +306,24 @@ impl<B: Board> Upload<'_, B> {
         }
         goal.retain(|page| page.address != first.address);
         if !goal.is_empty() && flash[first.range()] != placeholder {
-            self.write_page(first.address, &placeholder)?;
+            self.write_page(first.address, &placeholder).await?;
         }
-        self.write(&goal)?;
-        self.write(&[first])
+        self.write(&goal).await?;
+        self.write(&[first]).await
     }
 
     /// Reads flash up to the boot loader and reports its contents. For a robot alone, reads only the first page of
     /// the code and the pages of the old and the new robot.
-    fn read_flash(&mut self, boot: usize) -> Result<Vec<u8>, AttemptError> {
+    async fn read_flash(&mut self, boot: usize) -> Result<Vec<u8>, AttemptError> {
         let mut flash = vec![BLANK; BOOT_ADDRESS];
         if self.image.is_robot_alone() {
-            self.read(&mut flash, 0..1)?;
-            self.read(&mut flash, ROBOT_PAGE..ROBOT_PAGE + 1)?;
+            self.read(&mut flash, 0..1).await?;
+            self.read(&mut flash, ROBOT_PAGE..ROBOT_PAGE + 1).await?;
             let end = self.image.end().max(end_of_robot(&flash, boot));
-            self.read(&mut flash, ROBOT_PAGE + 1..end.div_ceil(PAGE_BYTES))?;
+            self.read(&mut flash, ROBOT_PAGE + 1..end.div_ceil(PAGE_BYTES))
+                .await?;
         } else {
-            self.read(&mut flash, 0..boot / PAGE_BYTES)?;
+            self.read(&mut flash, 0..boot / PAGE_BYTES).await?;
         }
         let contents = FlashContents::compare(&flash, self.image);
         if self.image.is_robot_alone() {
@@ -329,11 +349,11 @@ impl<B: Board> Upload<'_, B> {
         }))
     }
 
-    fn read(&mut self, flash: &mut [u8], pages: Range<usize>) -> Result<(), AttemptError> {
+    async fn read(&mut self, flash: &mut [u8], pages: Range<usize>) -> Result<(), AttemptError> {
         let page_count = pages.len();
         for (done, page) in pages.enumerate() {
             let address = page * PAGE_BYTES;
-            let read = self.loader.read_page(address)?;
+            let read = self.loader.read_page(address).await?;
             flash[address..address + PAGE_BYTES].copy_from_slice(&read);
             (self.report)(Event::Progress(Step::Reading, done + 1, page_count));
         }
@@ -341,16 +361,16 @@ impl<B: Board> Upload<'_, B> {
     }
 
     /// Writes pages and reads them back. A page that does not read back as written is written once more.
-    fn write(&mut self, pages: &[Page]) -> Result<(), AttemptError> {
+    async fn write(&mut self, pages: &[Page]) -> Result<(), AttemptError> {
         for (done, page) in pages.iter().enumerate() {
-            self.write_page(page.address, &page.bytes)?;
+            self.write_page(page.address, &page.bytes).await?;
             (self.report)(Event::Progress(Step::Writing, done + 1, pages.len()));
         }
         for (done, page) in pages.iter().enumerate() {
-            let mut read_back = self.loader.read_page(page.address)?;
+            let mut read_back = self.loader.read_page(page.address).await?;
             if read_back != page.bytes {
-                self.write_page(page.address, &page.bytes)?;
-                read_back = self.loader.read_page(page.address)?;
+                self.write_page(page.address, &page.bytes).await?;
+                read_back = self.loader.read_page(page.address).await?;
             }
             if let Some(offset) = difference(&read_back, &page.bytes) {
                 return Err(AttemptError::UploadFailed(UploadError::NotKept {
@@ -365,12 +385,16 @@ impl<B: Board> Upload<'_, B> {
         Ok(())
     }
 
-    fn write_page(&mut self, address: usize, bytes: &[u8; PAGE_BYTES]) -> Result<(), AttemptError> {
+    async fn write_page(
+        &mut self,
+        address: usize,
+        bytes: &[u8; PAGE_BYTES],
+    ) -> Result<(), AttemptError> {
         assert!(
             address < BOOT_ADDRESS,
             "an image ends before the boot loader"
         );
-        Ok(self.loader.write_page(address, bytes)?)
+        Ok(self.loader.write_page(address, bytes).await?)
     }
 
     fn upload_error(&self, trouble: LoaderError) -> UploadError {
@@ -403,4 +427,4 @@ fn difference(a: &[u8], b: &[u8]) -> Option<usize> {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

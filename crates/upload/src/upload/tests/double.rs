@@ -2,11 +2,10 @@
 //! ATmegaBOOT_168.c, with faults that a test can inject.
 
 use std::collections::VecDeque;
-use std::io::{self, ErrorKind, Read, Write};
-use std::thread;
 use std::time::Duration;
 
-use super::stk500::{Board, Kind};
+use crate::board::{Board, BoardError};
+use crate::loader::Kind;
 
 /// A simulated board: its flash, and the faults to inject.
 pub struct BoardDouble {
@@ -95,9 +94,13 @@ impl BoardDouble {
         double
     }
 
-    fn is_unplugged(&self) -> bool {
+    /// Fails if the board is unplugged.
+    fn check_connection(&self) -> Result<(), BoardError> {
         let page_limit = self.unplugged_after;
-        page_limit.is_some_and(|page_limit| self.written.len() >= page_limit)
+        match page_limit.is_some_and(|page_limit| self.written.len() >= page_limit) {
+            true => Err(BoardError::Gone),
+            false => Ok(()),
+        }
     }
 
     /// Answers a command if it is complete.
@@ -167,7 +170,7 @@ impl BoardDouble {
 }
 
 impl Board for BoardDouble {
-    fn reset(&mut self, baud: u32) -> io::Result<()> {
+    async fn reset(&mut self, baud: u32) -> Result<(), BoardError> {
         self.resets += 1;
         self.errors = 0;
         self.is_listening = !self.is_mute && baud == self.kind.baud();
@@ -178,30 +181,9 @@ impl Board for BoardDouble {
         self.out.extend(&self.garbage);
         Ok(())
     }
-}
 
-impl Read for BoardDouble {
-    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
-        if self.is_unplugged() {
-            // EIO, as on Linux.
-            return Err(io::Error::from_raw_os_error(5));
-        }
-        if self.out.is_empty() {
-            // A real port waits for a while, too, so that other threads can run.
-            thread::sleep(Duration::from_micros(200));
-            return Err(ErrorKind::TimedOut.into());
-        }
-        // A serial port returns bytes in small pieces.
-        let count = bytes.len().min(50);
-        self.out.read(&mut bytes[..count])
-    }
-}
-
-impl Write for BoardDouble {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if self.is_unplugged() {
-            return Err(io::Error::from_raw_os_error(5));
-        }
+    async fn write(&mut self, bytes: &[u8]) -> Result<(), BoardError> {
+        self.check_connection()?;
         for byte in bytes {
             let lost = self.lost_byte_to_board == Some(self.received);
             self.received += 1;
@@ -217,10 +199,21 @@ impl Write for BoardDouble {
                 self.answer_command();
             }
         }
-        Ok(bytes.len())
+        Ok(())
     }
 
-    fn flush(&mut self) -> io::Result<()> {
+    async fn read(&mut self, bytes: &mut [u8], _time: Duration) -> Result<usize, BoardError> {
+        self.check_connection()?;
+        let count = bytes.len().min(self.out.len());
+        for (byte, sent) in bytes.iter_mut().zip(self.out.drain(..count)) {
+            *byte = sent;
+        }
+        Ok(count)
+    }
+
+    async fn discard(&mut self, _time: Duration) -> Result<(), BoardError> {
+        self.check_connection()?;
+        self.out.clear();
         Ok(())
     }
 }

@@ -79,7 +79,7 @@ fn an_image_that_reaches_into_a_nanos_boot_section_is_refused() {
     };
     let words = refused(BoardDouble::blank(), in_doubt);
     assert!(
-        words.contains("If it is a UNO, say so: --board uno"),
+        words.contains("; this board may be one, because of its USB chip. Nothing"),
         "{words}"
     );
     for target in [any, named(Model::Uno)] {

@@ -10,12 +10,10 @@
 //! Sources: Atmel application note AVR061 for the commands; optiboot.c, version 4.4, the UNO's loader, and
 //! ATmegaBOOT_168.c, the Nano's until 2018, for the times and for the features that they leave out.
 
-use std::io::{self, ErrorKind, Read, Write};
 use std::time::Duration;
 
-use super::image::{BOOT_ADDRESS, NANO_BOOT_ADDRESS, PAGE_BYTES};
-use crate::drive::clock::Deadline;
-use crate::drive::console::link::is_gone;
+use crate::board::{Board, BoardError};
+use crate::image::{BOOT_ADDRESS, NANO_BOOT_ADDRESS, PAGE_BYTES};
 
 const OK: u8 = 0x10;
 const IN_SYNC: u8 = 0x14;
@@ -30,6 +28,8 @@ const READ_SIGNATURE: u8 = 0x75;
 const FLASH: u8 = b'F';
 /// Largest number of requests to synchronise ("calls") after one reset.
 const MAX_CALLS: usize = 5;
+/// Largest number of bytes before the answer to a call: about as many as the line carries in the time for a call.
+const MAX_STRAY_BYTES: usize = 1300;
 
 /// A kind of boot loader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,23 +59,13 @@ impl Kind {
     }
 }
 
-/// A connection to a board. A read must return within some milliseconds, with [`ErrorKind::TimedOut`] if nothing
-/// has arrived.
-pub trait Board: Read + Write {
-    /// Resets the chip, which starts its boot loader, and sets the speed of the line.
-    ///
-    /// # Errors
-    /// Fails if the connection is gone.
-    fn reset(&mut self, baud: u32) -> io::Result<()>;
-}
-
 /// Time limits for answers of a boot loader.
 #[derive(Debug, Clone, Copy)]
 pub struct Timeouts {
     /// Time after a reset in which the loader blinks and does not listen. Bytes sent meanwhile overflow its
     /// receiver, and half a command makes it give up.
     pub blink_time: Duration,
-    /// Time for the answer to one call.
+    /// Time for each byte of the answer to a call.
     pub call: Duration,
     /// Time after the first answer in which late answers to earlier calls are discarded.
     pub drain_time: Duration,
@@ -104,12 +94,9 @@ pub enum LoaderError {
     /// An answer of the wrong form.
     #[error("the board's answers are garbled")]
     Garbled,
-    /// The port has vanished.
-    #[error("the port is gone: the board was unplugged, or its cable is loose")]
-    Gone,
-    /// Any other error.
-    #[error("{0}")]
-    Io(io::Error),
+    /// The connection failed.
+    #[error(transparent)]
+    Board(BoardError),
 }
 
 impl LoaderError {
@@ -119,13 +106,12 @@ impl LoaderError {
     }
 }
 
-impl From<io::Error> for LoaderError {
-    fn from(error: io::Error) -> Self {
-        match error.kind() {
+impl From<BoardError> for LoaderError {
+    fn from(error: BoardError) -> Self {
+        match error {
             // A command that could not be sent gets no answer.
-            ErrorKind::TimedOut => Self::Silent,
-            _ if is_gone(&error) => Self::Gone,
-            _ => Self::Io(error),
+            BoardError::Busy => Self::Silent,
+            error => Self::Board(error),
         }
     }
 }
@@ -152,14 +138,14 @@ impl<B: Board> Loader<B> {
     ///
     /// # Errors
     /// Returns [`LoaderError::Silent`] if no loader answers, and another [`LoaderError`] if the connection fails.
-    pub fn call(&mut self, kind: Kind) -> Result<(), LoaderError> {
-        self.board.reset(kind.baud())?;
+    pub async fn call(&mut self, kind: Kind) -> Result<(), LoaderError> {
+        self.board.reset(kind.baud()).await?;
         // The last output of the program that ran before the reset also arrives in this time.
-        self.discard_input(self.timeouts.blink_time)?;
+        self.board.discard(self.timeouts.blink_time).await?;
         for _ in 0..MAX_CALLS {
-            self.board.write_all(&[GET_SYNC, CRC_EOP])?;
-            if self.wait_for_sync(self.timeouts.call)? {
-                return self.discard_input(self.timeouts.drain_time);
+            self.board.write(&[GET_SYNC, CRC_EOP]).await?;
+            if self.wait_for_sync().await? {
+                return Ok(self.board.discard(self.timeouts.drain_time).await?);
             }
         }
         Err(LoaderError::Silent)
@@ -169,9 +155,9 @@ impl<B: Board> Loader<B> {
     ///
     /// # Errors
     /// See [`LoaderError`].
-    pub fn signature(&mut self) -> Result<[u8; 3], LoaderError> {
+    pub async fn signature(&mut self) -> Result<[u8; 3], LoaderError> {
         let mut signature = [0; 3];
-        self.command(&[READ_SIGNATURE], &mut signature)?;
+        self.command(&[READ_SIGNATURE], &mut signature).await?;
         Ok(signature)
     }
 
@@ -179,10 +165,11 @@ impl<B: Board> Loader<B> {
     ///
     /// # Errors
     /// See [`LoaderError`].
-    pub fn read_page(&mut self, address: usize) -> Result<[u8; PAGE_BYTES], LoaderError> {
-        self.set_address(address)?;
+    pub async fn read_page(&mut self, address: usize) -> Result<[u8; PAGE_BYTES], LoaderError> {
+        self.set_address(address).await?;
         let mut page = [0; PAGE_BYTES];
-        self.command(&[READ_PAGE, 0, PAGE_BYTES as u8, FLASH], &mut page)?;
+        self.command(&[READ_PAGE, 0, PAGE_BYTES as u8, FLASH], &mut page)
+            .await?;
         Ok(page)
     }
 
@@ -190,103 +177,60 @@ impl<B: Board> Loader<B> {
     ///
     /// # Errors
     /// See [`LoaderError`].
-    pub fn write_page(
+    pub async fn write_page(
         &mut self,
         address: usize,
         page: &[u8; PAGE_BYTES],
     ) -> Result<(), LoaderError> {
-        self.set_address(address)?;
+        self.set_address(address).await?;
         let head = [PROGRAM_PAGE, 0, PAGE_BYTES as u8, FLASH];
         self.command(&[head.as_slice(), page].concat(), &mut [])
+            .await
     }
 
     /// Ends the boot loader, which then starts the program in flash.
     ///
     /// # Errors
     /// See [`LoaderError`].
-    pub fn leave(&mut self) -> Result<(), LoaderError> {
-        self.command(&[LEAVE], &mut [])
+    pub async fn leave(&mut self) -> Result<(), LoaderError> {
+        self.command(&[LEAVE], &mut []).await
     }
 
     /// Sets the address of the next page. The protocol counts it in words of two bytes.
-    fn set_address(&mut self, address: usize) -> Result<(), LoaderError> {
+    async fn set_address(&mut self, address: usize) -> Result<(), LoaderError> {
         let [low, high] = ((address / 2) as u16).to_le_bytes();
-        self.command(&[LOAD_ADDRESS, low, high], &mut [])
+        self.command(&[LOAD_ADDRESS, low, high], &mut []).await
     }
 
     /// Sends a command, and fills `answer` with the bytes between the answer's [`IN_SYNC`] and its [`OK`].
-    fn command(&mut self, bytes: &[u8], answer: &mut [u8]) -> Result<(), LoaderError> {
-        self.board.write_all(&[bytes, &[CRC_EOP]].concat())?;
-        let mut end = Deadline::after(self.timeouts.answer);
-        if self.read_byte(&mut end)? != IN_SYNC {
-            return Err(LoaderError::Garbled);
+    async fn command(&mut self, bytes: &[u8], answer: &mut [u8]) -> Result<(), LoaderError> {
+        self.board.write(&[bytes, &[CRC_EOP]].concat()).await?;
+        let mut read = vec![0; answer.len() + 2];
+        let count = self.board.read(&mut read, self.timeouts.answer).await?;
+        match read.as_slice() {
+            _ if count < read.len() => Err(LoaderError::Silent),
+            [IN_SYNC, between @ .., OK] => {
+                answer.copy_from_slice(between);
+                Ok(())
+            }
+            _ => Err(LoaderError::Garbled),
         }
-        self.read_exact(answer, &mut end)?;
-        if self.read_byte(&mut end)? != OK {
-            return Err(LoaderError::Garbled);
-        }
-        Ok(())
     }
 
-    /// Waits for [`IN_SYNC`] followed by [`OK`], after any other bytes. Returns false if they do not arrive in time.
-    fn wait_for_sync(&mut self, time: Duration) -> Result<bool, LoaderError> {
-        let mut end = Deadline::after(time);
+    /// Waits for [`IN_SYNC`] followed by [`OK`], after any other bytes. Returns false if nothing arrives in time, or too
+    /// many other bytes do.
+    async fn wait_for_sync(&mut self) -> Result<bool, LoaderError> {
         let mut last = 0;
-        loop {
-            let byte = match self.read_byte(&mut end) {
-                Err(LoaderError::Silent) => return Ok(false),
-                byte => byte?,
-            };
-            if [last, byte] == [IN_SYNC, OK] {
-                return Ok(true);
-            }
-            last = byte;
-            // A board that never stops sending would block this loop.
-            if end.has_passed() {
+        for _ in 0..MAX_STRAY_BYTES {
+            let mut byte = [0];
+            if self.board.read(&mut byte, self.timeouts.call).await? == 0 {
                 return Ok(false);
             }
-        }
-    }
-
-    /// Waits for the given time and discards all bytes received meanwhile.
-    fn discard_input(&mut self, time: Duration) -> Result<(), LoaderError> {
-        let mut end = Deadline::after(time);
-        let mut bytes = [0; 256];
-        loop {
-            self.read(&mut bytes)?;
-            if end.has_passed() {
-                return Ok(());
+            if [last, byte[0]] == [IN_SYNC, OK] {
+                return Ok(true);
             }
+            last = byte[0];
         }
-    }
-
-    fn read_byte(&mut self, end: &mut Deadline) -> Result<u8, LoaderError> {
-        let mut byte = [0];
-        self.read_exact(&mut byte, end)?;
-        Ok(byte[0])
-    }
-
-    /// Fills `bytes` and reads no more: further bytes may be for another reader.
-    fn read_exact(&mut self, mut bytes: &mut [u8], end: &mut Deadline) -> Result<(), LoaderError> {
-        while !bytes.is_empty() {
-            let count = self.read(bytes)?;
-            bytes = &mut bytes[count..];
-            if end.has_passed() && count == 0 {
-                return Err(LoaderError::Silent);
-            }
-        }
-        Ok(())
-    }
-
-    /// Reads the bytes that are available; returns 0 if there are none.
-    fn read(&mut self, bytes: &mut [u8]) -> Result<usize, LoaderError> {
-        match self.board.read(bytes) {
-            Ok(0) => Err(LoaderError::Gone),
-            Ok(count) => Ok(count),
-            Err(error) => match error.kind() {
-                ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::Interrupted => Ok(0),
-                _ => Err(error.into()),
-            },
-        }
+        Ok(false)
     }
 }

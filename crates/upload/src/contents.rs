@@ -6,10 +6,10 @@
 use std::fmt;
 
 use lizard_core::numbers::mark::Mark;
-use lizard_core::numbers::section::START;
+use lizard_core::numbers::robot::Robot;
+use lizard_core::numbers::section::{Region, START};
 
-use super::image::{BLANK, Image, PAGE_BYTES};
-use crate::shared::firmware::{label, robot_in};
+use crate::image::{BLANK, Image, PAGE_BYTES, Page};
 
 /// The code at address 0 during an upload, alone in its page: `rjmp .-2`, a jump to itself.
 pub(super) const IDLE_JUMP: [u8; 2] = [0xff, 0xcf];
@@ -65,7 +65,7 @@ impl FlashContents {
     /// a robot alone, only the first page and the robot's pages were read.
     pub fn compare(flash: &[u8], image: &Image) -> Self {
         let pages = image.pages();
-        let is_there = |page: &&super::image::Page| flash[page.range()] == page.bytes;
+        let is_there = |page: &&Page| flash[page.range()] == page.bytes;
         let code = pages.iter().filter(|page| page.address < ROBOT_ADDRESS);
         let program = match Mark::find(flash) {
             Some(mark) => Program::Lizard {
@@ -100,6 +100,17 @@ impl FlashContents {
             has_image,
         }
     }
+}
+
+/// A robot's name and hash, as printed in the firmware's banner.
+pub fn label(robot: &Robot) -> String {
+    let name: String = robot.robot_name().map(char::from).collect();
+    format!("{name} {:08x}", robot.hash())
+}
+
+/// The robot in the contents of flash, which start at address 0; `None` if there is no valid robot.
+pub fn robot_in(flash: &[u8]) -> Option<Robot<'_>> {
+    Robot::open(Region::new(flash.get(ROBOT_ADDRESS..)?)).ok()
 }
 
 fn is_blank(bytes: &[u8]) -> bool {
@@ -139,8 +150,8 @@ mod tests {
     use lizard_robot::Robot;
 
     use super::*;
-    use crate::drive::flash::file;
-    use crate::drive::flash::image::BOOT_ADDRESS;
+    use crate::image::BOOT_ADDRESS;
+    use crate::upload::tests::{CODE, robot};
 
     #[test]
     fn flash_is_blank_or_has_an_incomplete_or_another_program() {
@@ -169,9 +180,10 @@ mod tests {
 
     #[test]
     fn a_lizard_is_named_with_its_robot() {
-        let [paper, large] = ["paper", "large"].map(crate::shared::robot_file::named);
-        let image = file::image(&paper).expect("it fits");
-        let alone = file::robot_alone(&paper).expect("it fits");
+        let [paper, large] = ["paper", "large"].map(robot);
+        let whole = |robot: &Robot| Image::firmware(CODE, &robot.section()).expect("it fits");
+        let image = whole(&paper);
+        let alone = Image::robot_alone(paper.section()).expect("it fits");
         let mut flash = image.bytes().to_vec();
         flash.resize(BOOT_ADDRESS, 0xff);
         let lizard = format!("the board has lizard {}", env!("CARGO_PKG_VERSION"));
@@ -185,7 +197,7 @@ mod tests {
             text(&flash, &alone),
             format!("{} already", describe(&paper))
         );
-        let other = file::image(&large).expect("it fits");
+        let other = whole(&large);
         assert_eq!(text(&flash, &other), describe(&paper));
         // A sketch that is shorter than the firmware: the robot's section is still there.
         let mut sketch = flash.clone();

@@ -1,19 +1,26 @@
 //! Uploads to a simulated board and boot loader.
 
+use std::path::Path;
 use std::time::Duration;
 
 use lizard_core::numbers::mark::ADDRESS;
 
-use super::super::double::BoardDouble;
-use super::super::stk500::Timeouts;
-use super::super::target::Model;
+use lizard_robot::Robot;
+use pollster::block_on;
+
 use super::*;
-use crate::drive::flash::file;
-use crate::shared::firmware::robot_in;
-use crate::shared::robot_file::named as robot;
+use crate::board::BoardError;
+use crate::contents::robot_in;
+use crate::loader::Timeouts;
+use crate::target::Model;
+use double::BoardDouble;
 
 mod alone;
+mod double;
 mod nano;
+
+/// The code of the firmware, in Intel HEX.
+pub(crate) const CODE: &str = include_str!("../../../../firmware/code.hex");
 
 /// An image of five pages, the last one partly filled.
 fn image() -> Image {
@@ -50,19 +57,14 @@ fn run_with(board: BoardDouble, image: &Image) -> Run {
 
 /// Uploads to a board. `target` is what is known about the board before its boot loader answers.
 fn run_as(board: BoardDouble, image: &Image, target: Target) -> Run {
-    let timeouts = Timeouts {
-        blink_time: Duration::ZERO,
-        call: Duration::from_millis(2),
-        drain_time: Duration::ZERO,
-        answer: Duration::from_millis(5),
-    };
-    let mut loader = Loader::new(board, timeouts);
+    let mut loader = Loader::new(board, Timeouts::default());
     let (mut found, mut again) = (Vec::new(), 0);
-    let result = upload(&mut loader, image, target, &mut |event| match event {
+    let mut report = |event: Event<'_>| match event {
         Event::Found(what) => found.push(what.to_string()),
         Event::Retry { .. } => again += 1,
         Event::Progress(_, done, of) => assert!((1..=of).contains(&done), "{done} of {of}"),
-    });
+    };
+    let result = block_on(upload(&mut loader, image, target, &mut report));
     let board = loader.into_board();
     Run {
         result,
@@ -94,13 +96,19 @@ impl Run {
     }
 }
 
+/// The robot of the robot file of this name.
+pub(crate) fn robot(name: &str) -> Robot {
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots"));
+    Robot::load(&folder.join(format!("{name}.toml"))).expect("it is right")
+}
+
 /// A board with the firmware and the robot of this name.
 fn with_robot(name: &str) -> BoardDouble {
     BoardDouble::with(whole_image(name).bytes())
 }
 
 fn robot_image(name: &str) -> Image {
-    file::robot_alone(&robot(name)).expect("it fits")
+    Image::robot_alone(robot(name).section()).expect("it fits")
 }
 
 /// The name of the robot that the firmware would load.
@@ -110,7 +118,7 @@ fn robot_name(board: &BoardDouble) -> Option<String> {
 
 /// The firmware's image with the robot of the robot file of this name.
 fn whole_image(name: &str) -> Image {
-    file::image(&robot(name)).expect("it fits")
+    Image::firmware(CODE, &robot(name).section()).expect("it fits")
 }
 
 #[test]
@@ -184,35 +192,62 @@ fn a_board_that_never_answers_is_called_after_four_resets_and_not_written() {
 #[test]
 fn a_board_that_never_stops_sending_is_not_a_boot_loader() {
     struct Talker;
-    impl std::io::Read for Talker {
-        fn read(&mut self, bytes: &mut [u8]) -> std::io::Result<usize> {
+    impl Board for Talker {
+        async fn reset(&mut self, _baud: u32) -> Result<(), BoardError> {
+            Ok(())
+        }
+        async fn write(&mut self, _bytes: &[u8]) -> Result<(), BoardError> {
+            Ok(())
+        }
+        async fn read(&mut self, bytes: &mut [u8], _time: Duration) -> Result<usize, BoardError> {
             bytes.fill(b'x');
             Ok(bytes.len())
         }
-    }
-    impl std::io::Write for Talker {
-        fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-            Ok(bytes.len())
-        }
-        fn flush(&mut self) -> std::io::Result<()> {
+        async fn discard(&mut self, _time: Duration) -> Result<(), BoardError> {
             Ok(())
         }
     }
-    impl Board for Talker {
-        fn reset(&mut self, _baud: u32) -> std::io::Result<()> {
-            Ok(())
-        }
-    }
-    let result = lizard_time_limit::LIMIT.within("the end of the calls", || {
-        let timeouts = Timeouts {
-            blink_time: Duration::from_millis(2),
-            call: Duration::from_millis(2),
-            ..Timeouts::default()
-        };
-        let mut loader = Loader::new(Talker, timeouts);
-        upload(&mut loader, &image(), Target::default(), &mut |_| {})
-    });
+    let mut loader = Loader::new(Talker, Timeouts::default());
+    let (image, target) = (image(), Target::default());
+    let result = block_on(upload(&mut loader, &image, target, &mut |_| {}));
     assert!(matches!(result, Err(UploadError::NoLoader)));
+    assert!(matches!(
+        block_on(identify(&mut loader)),
+        Err(UploadError::NoLoader)
+    ));
+}
+
+#[test]
+fn a_board_is_identified_by_its_boot_loader_and_starts_again() {
+    let identified = |board: BoardDouble| {
+        let mut loader = Loader::new(board, Timeouts::default());
+        let kind = block_on(identify(&mut loader));
+        let board = loader.into_board();
+        assert!(board.written.is_empty());
+        (
+            kind.map_err(|error| error.to_string()),
+            board.has_started_program,
+        )
+    };
+    assert_eq!(identified(with_image()), (Ok(Kind::Optiboot), true));
+    assert_eq!(
+        identified(BoardDouble::old_nano()),
+        (Ok(Kind::AtmegaBoot), true)
+    );
+    let mut other = BoardDouble::blank();
+    other.signature = [0x1e, 0x95, 0x14];
+    let (refused, has_started) = identified(other);
+    assert!(
+        has_started
+            && refused.is_err_and(|words| words.starts_with("the chip is an ATmega328, without P"))
+    );
+    let mut unplugged = BoardDouble::blank();
+    unplugged.unplugged_after = Some(0);
+    assert!(
+        identified(unplugged)
+            .0
+            .is_err_and(|words| words.starts_with("the port is gone"))
+    );
 }
 
 #[test]
@@ -272,7 +307,7 @@ fn a_byte_that_the_flash_does_not_keep_is_named_and_the_board_does_nothing() {
     let run = run(board);
     let words = run.error();
     assert!(words.contains("the byte at address 0x0085"), "{words}");
-    assert!(words.ends_with("run this command again"), "{words}");
+    assert!(words.ends_with("write it again"), "{words}");
     assert!(run.starts_in_a_loop());
     assert_eq!(run.retries, 0, "another reset does not mend flash");
 }

@@ -1,7 +1,8 @@
 //! A robot that is written alone, while the board keeps its code.
 
 use super::*;
-use crate::drive::console::double::PAPER;
+
+const PAPER: &str = include_str!("../../../../../robots/paper.toml");
 
 #[test]
 fn a_robot_alone_is_written_with_its_first_page_blank_first_and_filled_last() {
@@ -28,7 +29,7 @@ fn a_gait_that_changes_costs_less_than_a_second_of_the_line() {
     let slower = lizard_robot::Robot::parse(&slower).expect("it is right");
     let run = run_with(
         with_robot("paper"),
-        &file::robot_alone(&slower).expect("it fits"),
+        &Image::robot_alone(slower.section()).expect("it fits"),
     );
     let done = run.result.expect("it is written");
     assert!((1..=3).contains(&done.written), "{done:?}");
@@ -106,8 +107,7 @@ fn a_robot_alone_is_refused_if_the_code_on_the_board_cannot_read_it() {
         assert!(run.board.flash == before && run.board.written.is_empty());
         run.error()
     };
-    let reason =
-        "a robot alone moves nothing: write both, without --only-robot. Nothing was written";
+    let reason = "a robot alone moves nothing: write the firmware, too. Nothing was written";
     assert_eq!(
         refused(&|board| board.flash[..BOOT_ADDRESS].fill(0xff)),
         format!("the board has no program, and {reason}")
@@ -127,8 +127,8 @@ fn a_robot_alone_is_refused_if_the_code_on_the_board_cannot_read_it() {
     let words = refused(&|board| board.flash[ADDRESS + 4] += 1);
     assert!(
         words.ends_with(&format!(
-            ", whose robots are of format {}; this program's are of format {FORMAT}. Write both, \
-             without --only-robot. Nothing was written",
+            ", whose robots are of format {}; this robot is of format {FORMAT}: write the \
+             firmware, too. Nothing was written",
             FORMAT + 1
         )),
         "{words}"

@@ -1,0 +1,30 @@
+//! Writing of firmware and robot to a UNO or a Nano through the board's own boot loader.
+//!
+//! The boot loader uses the same USB cable as the console, but it listens only for a second after a reset, it has
+//! no checksums, and a cable pulled during an upload leaves flash partly written. So [`upload`] reads the flash first,
+//! writes only pages that differ, reads all of them back, and writes the page at which the program starts last.
+//!
+//! The crate knows no port and no clock: a [`Board`] is a serial line with time limits, of this machine or of a
+//! browser. Its functions are `async`, since a browser cannot wait; where reads block, any executor will do.
+//!
+//! # When not to use it
+//! It writes an ATmega328P whose boot loader speaks STK500, version 1. Boards with other chips, programmers at the
+//! pins, fuses and the EEPROM are work for avrdude.
+#![deny(unsafe_code)]
+#![warn(clippy::missing_errors_doc)]
+
+mod board;
+mod chip;
+mod contents;
+mod image;
+mod loader;
+mod target;
+mod upload;
+
+pub use board::{Board, BoardError};
+pub use chip::Chip;
+pub use contents::{FlashContents, Program, RobotInFlash, label, robot_in};
+pub use image::{BLANK, BOOT_ADDRESS, Image, ImageError, NANO_BOOT_ADDRESS, PAGE_BYTES, Page};
+pub use loader::{Kind, Loader, LoaderError, Timeouts};
+pub use target::{Model, Target, TooLong};
+pub use upload::{Event, FlashState, PageCounts, Step, UploadError, identify, upload};

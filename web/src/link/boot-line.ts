@@ -1,0 +1,59 @@
+// The serial line to a board's boot loader. The conversation with it is Rust, in a WebAssembly module of its own.
+import type * as Upload from '../../generated/upload';
+import { files } from '../files';
+import { BAUD, type Link } from './link';
+
+let loading: Promise<typeof Upload> | null = null;
+
+/** Loads the module that writes to boards. Throws an error for the user. */
+export function loadUpload(): Promise<typeof Upload> {
+  const load = async () => {
+    const [upload, module] = await Promise.all([import('../../generated/upload'), files.upload()]);
+    upload.initSync({ module });
+    return upload;
+  };
+  return (loading ??= load().catch((error: unknown) => {
+    loading = null;
+    throw error;
+  }));
+}
+
+export class BootLine implements Upload.Line {
+  private received: number[] = [];
+  private arrived: () => void = () => {};
+  private baud = BAUD;
+
+  constructor(private readonly link: Link) {
+    link.onBytes = (bytes) => {
+      this.received.push(...bytes);
+      this.arrived();
+    };
+  }
+
+  async reset(baud: number): Promise<void> {
+    this.baud = baud;
+    await this.link.reset(baud);
+  }
+
+  write(bytes: Uint8Array): Promise<void> {
+    return this.link.write(bytes);
+  }
+
+  async read(count: number, time: number): Promise<Uint8Array> {
+    if (this.received.length < count) {
+      const isComplete = new Promise<void>((complete) => (this.arrived = () => this.received.length >= count && complete()));
+      await Promise.race([this.link.wait(time), isComplete]);
+    }
+    return Uint8Array.from(this.received.splice(0, count));
+  }
+
+  async discard(time: number): Promise<void> {
+    await this.link.wait(time);
+    this.received = [];
+  }
+
+  /** Returns the line to the firmware's baud rate, which resets the board if the boot loader has another one. */
+  async end(): Promise<void> {
+    if (this.baud !== BAUD) await this.link.reset(BAUD).catch(() => {});
+  }
+}

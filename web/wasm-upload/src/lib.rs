@@ -1,0 +1,114 @@
+//! Firmware and robot to a board of the page: the order of pages and the words of `lizard flash`, in a browser.
+//!
+//! The page has the serial line, by Web Serial or to its simulated UNO, and its time; [`Line`] is what this module sees
+//! of it. This crate is a WebAssembly module of its own, which the page loads when it writes to a board or identifies
+//! one.
+//!
+//! # When not to use it
+//! The interface is made for this page and changes with it. A program in Rust uses `lizard-upload`.
+#![deny(unsafe_code)]
+#![deny(missing_docs)]
+#![warn(clippy::missing_errors_doc)]
+
+mod line;
+
+use js_sys::Function;
+use lizard_core::numbers::mark::Mark;
+use lizard_upload::{Event, Image, Kind, Loader, Model, Step, Target, Timeouts};
+use wasm_bindgen::prelude::*;
+
+use line::JsBoard;
+pub use line::Line;
+
+/// Reads an image in Intel HEX; returns its bytes from address 0 on.
+///
+/// # Errors
+/// Fails if the text is not the image of a program for a UNO.
+#[wasm_bindgen(js_name = imageOf)]
+pub fn image_of(hex: &str) -> Result<Vec<u8>, JsError> {
+    Ok(Image::from_hex(hex)?.bytes().to_vec())
+}
+
+/// True if an image is this firmware, of any version.
+#[wasm_bindgen(js_name = isLizard)]
+pub fn is_lizard(image: &[u8]) -> bool {
+    Mark::find(image).is_some()
+}
+
+/// True if an image from address 0 on reaches into the boot section of a Nano.
+#[wasm_bindgen(js_name = needsUno)]
+pub fn needs_uno(end: usize) -> bool {
+    end > lizard_upload::NANO_BOOT_ADDRESS
+}
+
+/// The kind of board that a user names; `Unknown` if nobody was asked.
+#[wasm_bindgen]
+#[derive(Debug, Clone, Copy)]
+pub enum Board {
+    /// A UNO or a Nano.
+    Unknown,
+    /// An Arduino UNO.
+    Uno,
+    /// An Arduino Nano.
+    Nano,
+}
+
+/// Writes an image from address 0 on, or a robot's section alone, to a board, reads it back and starts it. `report`
+/// gets the progress: `reading`, `writing` or `verifying`, the number of finished pages and of all; or `again`, if the
+/// board is reset for another attempt.
+///
+/// # Errors
+/// Rejects with a sentence for the user, which says what the flash holds now.
+#[wasm_bindgen]
+pub async fn upload(
+    line: Line,
+    bytes: Vec<u8>,
+    #[wasm_bindgen(js_name = isRobotAlone)] is_robot_alone: bool,
+    board: Board,
+    #[wasm_bindgen(
+        unchecked_param_type = "(step: 'reading' | 'writing' | 'verifying' | 'again', done: number, of: number) => void"
+    )]
+    report: Function,
+) -> Result<(), JsError> {
+    let image = match is_robot_alone {
+        true => Image::robot_alone(bytes),
+        false => Image::new(bytes),
+    }?;
+    let target = Target {
+        model: match board {
+            Board::Unknown => None,
+            Board::Uno => Some(Model::Uno),
+            Board::Nano => Some(Model::Nano),
+        },
+        may_be_nano: false,
+    };
+    let report = |step: &str, done: usize, of: usize| {
+        // An error of the page is no reason to stop in the middle of an upload.
+        let _ = report.call3(&JsValue::NULL, &step.into(), &done.into(), &of.into());
+    };
+    let mut loader = Loader::new(JsBoard(line), Timeouts::default());
+    lizard_upload::upload(&mut loader, &image, target, &mut |event| match event {
+        Event::Found(_) => {}
+        Event::Retry { .. } => report("again", 0, 1),
+        Event::Progress(Step::Reading, done, of) => report("reading", done, of),
+        Event::Progress(Step::Writing, done, of) => report("writing", done, of),
+        Event::Progress(Step::Verifying, done, of) => report("verifying", done, of),
+    })
+    .await?;
+    Ok(())
+}
+
+/// Resets a board and returns its model by its boot loader; then starts its program.
+///
+/// # Errors
+/// Rejects with a sentence for the user, unless it is a board with the chip of a UNO.
+#[wasm_bindgen]
+pub async fn identify(line: Line) -> Result<String, JsError> {
+    let mut loader = Loader::new(JsBoard(line), Timeouts::default());
+    let kind = lizard_upload::identify(&mut loader).await?;
+    Ok(match kind {
+        Kind::Optiboot => "UNO",
+        Kind::AtmegaBoot => "Nano",
+    }
+    .to_owned())
+}
